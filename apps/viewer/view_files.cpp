@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "io/codec.h"
 #include "job/explanation_json.h"
 #include "viewer/dropped_file.h"
@@ -50,7 +51,8 @@ void openSession(ViewState& state, job::interactive::SessionRequest request, con
 
 void useReference(ViewState& state, const std::string& path) {
   try {
-    state.reference = std::make_shared<const io::Image>(io::readImage(path));
+    MemoryBudget budget(path, state.snapshot->request ? state.snapshot->request->render.load.maxMemory : 0);
+    state.reference = std::make_shared<const io::Image>(io::readImage(path, budget));
     state.referenceFile = std::filesystem::path(path).filename().string();
     if (state.controls.compare == CompareMode::off) state.controls.compare = CompareMode::split;
   } catch (const Error& error) {

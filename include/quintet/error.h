@@ -20,7 +20,7 @@ enum class Remedy {
   selectLayer,        // request the output as a layer
   allowDifference,    // name the facts of two films that may differ
   measureLaunches,    // measure the launches of the program instead of its rays
-  raiseMemoryLimit,   // allow the scene file more memory
+  raiseMemoryLimit,   // allow the file more memory
   allowExternal,      // allow files outside of the folder of the scene file
   omitTextures,       // render without missing textures
 };

@@ -53,11 +53,12 @@ struct WriteOptions {
 // image was made. Copies share their data, which never changes, so a film can be used from several threads.
 class Film {
  public:
-  // Reads a .qfilm file: a checkpoint or a part of a render. Throws FileError.
-  static Film load(const std::filesystem::path& file);
+  // Reads a .qfilm file: a checkpoint or a part of a render. `maxMemory`: bytes of host memory that the file can request;
+  // 0 means 80 % of the machine's memory. Throws FileError; MemoryError above the limit, before the memory is allocated.
+  static Film load(const std::filesystem::path& file, std::size_t maxMemory = 0);
   // Joins parts of one render (Settings::batches) into the bytes of one render of all samples. Throws FileError if the
-  // parts belong to different renders or share samples.
-  static Film merge(const std::vector<std::filesystem::path>& parts);
+  // parts belong to different renders or share samples. `maxMemory` of each part: as for load().
+  static Film merge(const std::vector<std::filesystem::path>& parts, std::size_t maxMemory = 0);
 
   std::uint32_t width() const;              // pixels, of the rendered region
   std::uint32_t height() const;             // pixels, of the rendered region

@@ -59,6 +59,9 @@ struct Settings {
   // Number of samples for which the sampler distributes its points best; 0 means after each power of two. It decides the
   // values of samples. `quintet render --spp N` uses N.
   std::uint32_t plannedSamples = 0;
+  // Bytes of host memory that a file can request while it is read: an image of `parameters`, or the checkpoint of
+  // Renderer::resume(). 0 means 80 % of the machine's memory. More is a MemoryError (Remedy::raiseMemoryLimit).
+  std::size_t maxMemory = 0;
 };
 
 // A render stops at the first limit that is reached. At least one must be set, unless Settings::batches limits the render or

@@ -193,8 +193,10 @@ struct LoadOptions {
   std::string animation = "none";
   double framesPerSecond = 24.0;  // > 0; frame k of the animation is at k / framesPerSecond seconds
   bool strict = false;            // throw FileError with a list if a part of the file is ignored or repaired
-  bool omitTextures = false;   // use the factors of materials if an image is missing or invalid, instead of FileError
-  std::size_t maxMemory = 0;   // bytes that the file can request; 0 means 80 % of the memory
+  bool omitTextures = false;  // use the factors of materials if an image is missing or invalid, instead of FileError
+  // Bytes of host memory that the file, and the files that it names, can request while they are read; 0 means 80 % of the
+  // machine's memory. More is a MemoryError (Remedy::raiseMemoryLimit) before the memory is allocated.
+  std::size_t maxMemory = 0;
   bool allowExternal = false;  // read buffers and images of glTF files from outside of their folders
 };
 
@@ -244,14 +246,15 @@ class Scene {
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   // Reads a scene in the format of .scene.toml. `folder` is where it looks for files that the text names. Throws FileError
   // with the line, MemoryError.
-  static Scene fromToml(std::string_view text, const std::filesystem::path& folder = ".");
+  static Scene fromToml(std::string_view text, const std::filesystem::path& folder = ".", std::size_t maxMemory = 0);
   // Returns the program's own scene, else a small built-in one with geometry that its hit groups support.
   static Scene of(const Program& program);
 
   // Each function returns the index of the new object.
   int addTexture(const Texture& texture);
-  int addTexture(const std::filesystem::path& file);  // PNG, JPEG, WebP, KTX2, HDR or OpenEXR; throws FileError
-  int addMaterial(const Material& material);          // its textures exist already
+  // PNG, JPEG, WebP, KTX2, HDR or OpenEXR. `maxMemory`: LoadOptions. Throws FileError, MemoryError.
+  int addTexture(const std::filesystem::path& file, std::size_t maxMemory = 0);
+  int addMaterial(const Material& material);                                         // its textures exist already
   int addMesh(const Triangles& triangles, const std::string& name = {});             // its material exists already
   int addMesh(std::span<const Triangles> geometries, const std::string& name = {});  // one mesh with several materials
   // Boxes in object space for the intersection shader of a program. Hit groups are bound to them by `name`.
@@ -261,7 +264,8 @@ class Scene {
   int addCamera(const Camera& camera, const std::string& name = {});  // the first one is the default of renderers
   // A scene without lights and without an environment gets the default one. A black environment counts as one.
   void setEnvironment(const Environment& environment);
-  void setEnvironment(const std::filesystem::path& file);  // an equirectangular image; throws FileError
+  // An equirectangular image. `maxMemory`: LoadOptions. Throws FileError, MemoryError.
+  void setEnvironment(const std::filesystem::path& file, std::size_t maxMemory = 0);
 
   // Replaces a material. Its geometries get tangents for a normal map if they have none, and keep those that they have.
   void setMaterial(int index, const Material& material);

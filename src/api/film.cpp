@@ -89,11 +89,11 @@ Film Film::Impl::make(job::RenderResult result, std::vector<output::Layer> layer
   return film;
 }
 
-Film Film::load(const std::filesystem::path& file) { return merge({file}); }
+Film Film::load(const std::filesystem::path& file, std::size_t maxMemory) { return merge({file}, maxMemory); }
 
-Film Film::merge(const std::vector<std::filesystem::path>& parts) {
+Film Film::merge(const std::vector<std::filesystem::path>& parts, std::size_t maxMemory) {
   job::Observer ignored;
-  job::RenderResult result = job::merge(parts, ignored);
+  job::RenderResult result = job::merge(parts, ignored, {}, maxMemory);
   std::vector<output::Layer> layers = storedLayers(result);
   return Impl::make(std::move(result), std::move(layers));
 }

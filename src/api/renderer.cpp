@@ -103,6 +103,7 @@ job::RenderRequest toRequest(const Settings& settings, std::shared_ptr<const sce
     throw UsageError("a region has at least one pixel in each direction");
   request.seed = settings.seed;
   request.transparent = settings.transparent;
+  request.load.maxMemory = settings.maxMemory;
   if (settings.shutter) request.shutter = job::ShutterRequest{settings.shutter->open, settings.shutter->close};
   for (const auto& [name, value] : settings.parameters) request.assignments.push_back(name + "=" + value);
   request.outputs = optionalOutputs(settings, program);

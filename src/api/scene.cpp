@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "api/impl.h"
+#include "base/memory_budget.h"
 #include "base/plural.h"
 #include "io/codec.h"
 #include "job/scene_source.h"
@@ -206,6 +207,21 @@ void requireFinite(const Float3& v, const std::string& object, const char* what)
   if (!isFinite(toGlm(v))) throw UsageError(fmt::format("{}: {} is not finite", object, what));
 }
 
+scene::LoadOptions toScene(const LoadOptions& options) {
+  if (!(std::isfinite(options.framesPerSecond) && options.framesPerSecond > 0))
+    throw UsageError(fmt::format("{} frames per second: the rate must be above 0", options.framesPerSecond));
+  scene::LoadOptions load;
+  load.scene = options.scene;
+  load.variant = options.variant;
+  if (options.animation != "none") load.animation = options.animation;
+  load.framesPerSecond = options.framesPerSecond;
+  load.strict = options.strict;
+  if (options.omitTextures) load.missingTextures = scene::MissingTextures::warn;
+  load.maxMemory = options.maxMemory;
+  load.allowExternal = options.allowExternal;
+  return load;
+}
+
 }  // namespace
 
 mat4 toGlm(const Transform& transform) {
@@ -250,25 +266,15 @@ Scene::Impl& Scene::change() {
 }
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
-  if (!(std::isfinite(options.framesPerSecond) && options.framesPerSecond > 0))
-    throw UsageError(fmt::format("{} frames per second: the rate must be above 0", options.framesPerSecond));
-  scene::LoadOptions load;
-  load.scene = options.scene;
-  load.variant = options.variant;
-  if (options.animation != "none") load.animation = options.animation;
-  load.framesPerSecond = options.framesPerSecond;
-  load.strict = options.strict;
-  if (options.omitTextures) load.missingTextures = scene::MissingTextures::warn;
-  load.maxMemory = options.maxMemory;
-  load.allowExternal = options.allowExternal;
   Scene result;
-  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, load));
+  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, toScene(options)));
   return result;
 }
 
-Scene Scene::fromToml(std::string_view text, const std::filesystem::path& folder) {
+Scene Scene::fromToml(std::string_view text, const std::filesystem::path& folder, std::size_t maxMemory) {
   Scene result;
-  result.impl_->scene = std::make_shared<scene::Scene>(scene::parseSceneToml(text, folder / "scene.toml"));
+  result.impl_->scene =
+      std::make_shared<scene::Scene>(scene::parseSceneToml(text, folder / "scene.toml", {.maxMemory = maxMemory}));
   return result;
 }
 
@@ -290,8 +296,9 @@ int Scene::addTexture(const Texture& texture) {
   return static_cast<int>(scene.textures.size() - 1);
 }
 
-int Scene::addTexture(const std::filesystem::path& file) {
-  io::Image image = io::readImage(file);
+int Scene::addTexture(const std::filesystem::path& file, std::size_t maxMemory) {
+  MemoryBudget budget(file, maxMemory);
+  io::Image image = io::readImage(file, budget);
   scene::Scene& scene = *change().scene;
   scene.images.push_back({file.string(), std::move(image)});
   scene.textures.push_back({file.filename().string(), static_cast<int>(scene.images.size() - 1), {}});
@@ -401,11 +408,12 @@ void Scene::setEnvironment(const Environment& environment) {
   change().scene->environment = std::move(added);
 }
 
-void Scene::setEnvironment(const std::filesystem::path& file) {
+void Scene::setEnvironment(const std::filesystem::path& file, std::size_t maxMemory) {
+  MemoryBudget budget(file, maxMemory);
   scene::Environment added;
   added.present = true;
   added.name = file.string();
-  added.image = io::toFloat(io::readImage(file));
+  added.image = io::readRadiance(file, budget);
   change().scene->environment = std::move(added);
 }
 

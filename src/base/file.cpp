@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory_budget.h"
 #include "base/parallel.h"
 #include "base/temporary_file.h"
 
@@ -71,7 +72,7 @@ std::size_t readInParts(int fd, std::span<std::byte> data) {
 }
 
 template <class Container>
-Container readAll(const fs::path& file) {
+Container readAll(const fs::path& file, MemoryBudget& budget) {
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat info {};
   if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
@@ -81,7 +82,9 @@ Container readAll(const fs::path& file) {
   std::size_t used = 0;
   try {
     // One byte more than the size: read() can then return 0 at the end of the file without growing the buffer.
-    data.resize(S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : 65536);
+    const std::size_t first = S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : 65536;
+    budget.take(first);
+    data.resize(first);
     if constexpr (std::is_same_v<Container, FileBytes>) {
       if (S_ISREG(info.st_mode)) used = readInParts(in.get(), std::span(data).first(data.size() - 1));
       if (used > 0 && ::lseek(in.get(), static_cast<off_t>(used), SEEK_SET) < 0) failReading(file, errno);
@@ -92,7 +95,9 @@ Container readAll(const fs::path& file) {
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) failReading(file, errno);
       used += static_cast<std::size_t>(got);
-      if (used == data.size()) data.resize(2 * used);
+      if (used < data.size()) continue;
+      budget.take(used);
+      data.resize(2 * used);
     }
     data.resize(used);
   } catch (const std::bad_alloc&) {
@@ -182,9 +187,19 @@ void replaceFile(const fs::path& file, const Target& target, std::span<const std
 
 }  // namespace
 
-std::vector<std::byte> readFile(const fs::path& file) { return readAll<std::vector<std::byte>>(file); }
-FileBytes readLargeFile(const fs::path& file) { return readAll<FileBytes>(file); }
-std::string readTextFile(const fs::path& file) { return readAll<std::string>(file); }
+std::vector<std::byte> readFile(const fs::path& file) {
+  MemoryBudget budget(file, 0, Remedy::none);
+  return readFile(file, budget);
+}
+std::vector<std::byte> readFile(const fs::path& file, MemoryBudget& budget) {
+  return readAll<std::vector<std::byte>>(file, budget);
+}
+std::string readTextFile(const fs::path& file) {
+  MemoryBudget budget(file, 0, Remedy::none);
+  return readTextFile(file, budget);
+}
+std::string readTextFile(const fs::path& file, MemoryBudget& budget) { return readAll<std::string>(file, budget); }
+FileBytes readLargeFile(const fs::path& file, MemoryBudget& budget) { return readAll<FileBytes>(file, budget); }
 
 void writeFile(const fs::path& file, std::span<const std::byte> data) {
   if (file == "-") {

@@ -15,6 +15,8 @@
 
 namespace quintet {
 
+class MemoryBudget;
+
 // std::allocator, except that resize() leaves new elements of trivial types uninitialized.
 template <class T>
 struct UnclearedAllocator : std::allocator<T> {
@@ -33,12 +35,15 @@ struct UnclearedAllocator : std::allocator<T> {
 };
 using FileBytes = std::vector<std::byte, UnclearedAllocator<std::byte>>;
 
-// Reads a whole file. Throws FileError if it is missing, a folder, unreadable or larger than the memory.
+// Reads a whole file. Throws FileError if it is missing, a folder, or unreadable; MemoryError if it is larger than 80 % of
+// the machine's memory, or than the budget allows. A budget counts the bytes before they are allocated.
 std::vector<std::byte> readFile(const std::filesystem::path& file);
+std::vector<std::byte> readFile(const std::filesystem::path& file, MemoryBudget&);
+std::string readTextFile(const std::filesystem::path& file);
+std::string readTextFile(const std::filesystem::path& file, MemoryBudget&);
 // Reads a large file on all cores into memory that is not cleared first. Mapping the file would not be faster, and the
 // process would be killed if another process truncated the file.
-FileBytes readLargeFile(const std::filesystem::path& file);
-std::string readTextFile(const std::filesystem::path& file);
+FileBytes readLargeFile(const std::filesystem::path& file, MemoryBudget&);
 
 // Writes a temporary file beside `file` (temporary_file.h), flushes it to the disk and renames it to `file`, so readers
 // never see a partial file. On failure (no folder, no permission, disk full) the temporary file is removed, an existing

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "base/text.h"
 #include "io/formats.h"
 
@@ -37,11 +38,40 @@ std::string lowerExtension(const std::filesystem::path& file) { return lowerCase
 }  // namespace
 
 Image decodeImage(std::span<const std::byte> bytes, const std::string& nameForErrors) {
-  const Source source{bytes, nameForErrors};
-  return withFormat(source, [&](const Format& format) { return format.decode(source); });
+  MemoryBudget budget(nameForErrors, 0, Remedy::none);
+  return decodeImage(bytes, nameForErrors, budget);
 }
 
-Image readImage(const std::filesystem::path& file) { return decodeImage(readFile(file), file.string()); }
+Image decodeImage(std::span<const std::byte> bytes, const std::string& nameForErrors, MemoryBudget& budget) {
+  const Source source{bytes, nameForErrors};
+  return withFormat(source, [&](const Format& format) {
+    const ImageInfo info = format.probe(source);
+    budget.take(info.byteCount());
+    const TemporaryMemory temporary(budget, info.temporaryBytes);
+    return format.decode(source);
+  });
+}
+
+Image readImage(const std::filesystem::path& file) {
+  MemoryBudget budget(file, 0, Remedy::none);
+  return readImage(file, budget);
+}
+
+Image readImage(const std::filesystem::path& file, MemoryBudget& budget) {
+  const std::vector<std::byte> bytes = readFile(file, budget);
+  Image image = decodeImage(bytes, file.string(), budget);
+  budget.giveBack(bytes.size());
+  return image;
+}
+
+Image readRadiance(const std::filesystem::path& file, MemoryBudget& budget) {
+  Image image = readImage(file, budget);
+  if (image.type == PixelType::f32 && image.encoding == ColorEncoding::linear) return image;
+  budget.take(image.sampleCount() * sizeof(float));
+  Image radiance = toFloat(image);
+  budget.giveBack(image.data.size());
+  return radiance;
+}
 
 ImageInfo probeImage(std::span<const std::byte> bytes, const std::string& nameForErrors) {
   const Source source{bytes, nameForErrors};

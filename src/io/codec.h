@@ -13,6 +13,10 @@
 
 #include "io/image.h"
 
+namespace quintet {
+class MemoryBudget;
+}
+
 namespace quintet::io {
 
 // Decodes an image. The result depends on the format:
@@ -26,9 +30,15 @@ namespace quintet::io {
 //                 Universal
 // Integer formats are sRGB-encoded with straight alpha, float formats are linear. Color chunks and profiles are
 // ignored, as glTF 2.0 (3.8.3) requires for textures; so is the Exif orientation.
-// `nameForErrors` is a path or another name of the bytes. Throws FileError.
+// `nameForErrors` is a path or another name of the bytes. What the header states counts in the budget before it is
+// allocated. Without a budget, 80 % of the machine's memory are the limit. Throws FileError, MemoryError.
 Image decodeImage(std::span<const std::byte> bytes, const std::string& nameForErrors);
+Image decodeImage(std::span<const std::byte> bytes, const std::string& nameForErrors, MemoryBudget&);
+// The same for a file, whose bytes count while the image is decoded.
 Image readImage(const std::filesystem::path& file);
+Image readImage(const std::filesystem::path& file, MemoryBudget&);
+// The same, as linear floats (toFloat), for an environment.
+Image readRadiance(const std::filesystem::path& file, MemoryBudget&);
 
 // Reads the header only, so corrupt pixel data is not detected. Throws FileError.
 ImageInfo probeImage(std::span<const std::byte> bytes, const std::string& nameForErrors);

@@ -155,7 +155,7 @@ class LineReader {
 
 ImageInfo probe(const Source& source) {
   const Header header = readHeader(source);
-  return {header.width, header.height, 3, PixelType::f32, {}};
+  return {header.width, header.height, 3, PixelType::f32, {}, sizeof(Rgbe) * header.width * header.height};
 }
 
 Image decode(const Source& source) {

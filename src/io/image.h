@@ -83,7 +83,9 @@ struct ImageInfo {
   std::uint32_t height = 0;
   std::uint32_t channels = 0;  // of the decoded image
   PixelType type = PixelType::u8;
-  std::string_view format;         // "PNG", "JPEG", "WebP", "Radiance HDR", "OpenEXR"
+  std::string_view format;  // "PNG", "JPEG", "WebP", "Radiance HDR", "OpenEXR", "KTX2"
+  // Bytes that decoding needs for a while, besides the file and the decoded image; less than 1 MiB does not count.
+  std::size_t temporaryBytes = 0;
   std::size_t byteCount() const {  // of the decoded image
     return std::size_t{width} * height * channels * bytesPerSample(type);
   }

@@ -2,6 +2,7 @@
 // JPEG (baseline and progressive, 8 bit) through TurboJPEG.
 #include <turbojpeg.h>
 
+#include <cstdint>
 #include <memory>
 #include <new>
 
@@ -62,6 +63,32 @@ Header readHeader(const Source& source, void* decoder) {
   return header;
 }
 
+// Whether libjpeg keeps the coefficients of the whole image: it is progressive, or has several scans.
+bool storesCoefficients(const Source& source) {
+  std::size_t components = 0;
+  for (std::size_t at = 2; at + 10 <= source.size();) {
+    const std::uint8_t marker = source[at + 1];
+    if (source[at] != 0xFF || marker == 0xFF || marker == 0) {
+      ++at;
+      continue;
+    }
+    const bool alone = marker == 1 || (marker >= 0xD0 && marker <= 0xD9);  // without a length
+    if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
+      if (marker % 4 == 2) return true;
+      components = source[at + 9];
+    }
+    if (marker == 0xDA) return source[at + 4] < components;
+    at += alone ? 2 : 2 + static_cast<std::size_t>(source[at + 2] << 8 | source[at + 3]);
+  }
+  return false;
+}
+
+// In blocks of at most 32 pixels per side.
+std::size_t coefficientBytes(const Header& header) {
+  const auto rounded = [](int size) { return (static_cast<std::size_t>(size) + 31) / 32 * 32; };
+  return rounded(header.width) * rounded(header.height) * header.channels * sizeof(std::int16_t);
+}
+
 bool matches(const Source& source) { return source.has(0, "\xff\xd8\xff"); }
 
 ImageInfo probe(const Source& source) {
@@ -71,7 +98,8 @@ ImageInfo probe(const Source& source) {
           static_cast<std::uint32_t>(header.height),
           header.channels,
           PixelType::u8,
-          {}};
+          {},
+          storesCoefficients(source) ? coefficientBytes(header) : 0};
 }
 
 Image decode(const Source& source) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // KTX 2.0 (Khronos, version 2.0.4): 2D images in uncompressed formats and BC1 to BC7, with Zstandard or zlib
-// supercompression. Only level 0, the whole image, is read. Basis Universal (ETC1S, UASTC) is not supported: no package of
-// Debian has a transcoder for C++.
+// supercompression. Only level 0, the whole image, is read. Basis Universal (ETC1S, UASTC) is not supported
+// (docs/design/dependencies.md).
 #include <zlib.h>
 #include <zstd.h>
 
@@ -307,7 +307,9 @@ bool matches(const Source& source) { return source.has(0, kIdentifier); }
 
 ImageInfo probe(const Source& source) {
   const Header header = readHeader(source);
-  return {header.width, header.height, imageChannels(header), imageType(header.layout), {}};
+  const bool compressed = header.supercompression != Supercompression::none;
+  return {
+      header.width, header.height, imageChannels(header), imageType(header.layout), {}, compressed ? header.size : 0};
 }
 
 Image decode(const Source& source) {

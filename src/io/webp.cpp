@@ -60,11 +60,13 @@ WebPBitstreamFeatures readHeader(const Source& source) {
 
 ImageInfo probe(const Source& source) {
   const WebPBitstreamFeatures features = readHeader(source);
+  const std::size_t pixels = static_cast<std::size_t>(features.width) * static_cast<std::size_t>(features.height);
   return {static_cast<std::uint32_t>(features.width),
           static_cast<std::uint32_t>(features.height),
           features.has_alpha ? 4u : 3u,
           PixelType::u8,
-          {}};
+          {},
+          pixels * (features.has_alpha ? 4 : 3)};  // libwebp's own buffer
 }
 
 Image decode(const Source& source) {

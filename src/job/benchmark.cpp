@@ -58,7 +58,7 @@ struct Setup {
       : request(r), scene(scene::loadScene(r.scene, r.load)), compiler(makeCompiler(cacheFolder())) {
     size = sizeOf(r.size, softwareDevice);
     camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
-    environment = chooseEnvironment(scene, {r.environment, {}, {}}).environment;
+    environment = chooseEnvironment(scene, {r.environment, {}, {}}, r.load.maxMemory).environment;
   }
 
   render::RenderSettings settings(const program::Program& program, uvec2 pixels) const {
@@ -338,7 +338,8 @@ class ProgramBenchmark {
     scene::Scene scene = loadScene(source_);
     camera_ =
         chooseCamera(scene, request.render.camera, static_cast<float>(size_.x) / static_cast<float>(size_.y)).camera;
-    const scene::Environment environment = chooseEnvironment(scene, request.render.environment).environment;
+    const scene::Environment environment =
+        chooseEnvironment(scene, request.render.environment, request.render.load.maxMemory).environment;
     scene_.emplace(context_, std::move(scene), environment);
   }
 
@@ -375,6 +376,7 @@ class ProgramBenchmark {
     settings.camera = camera_;
     settings.seed = request_.render.seed;
     settings.parameters = parameters_;
+    settings.maxMemory = request_.render.load.maxMemory;
     settings.launchSeconds = 1.0;
     settings.timeoutSeconds = 300;
     settings.profile = !instrument;

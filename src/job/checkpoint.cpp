@@ -34,7 +34,7 @@ void checkSamples(const std::filesystem::path& file, const render::FilmState& fi
 
 std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const Provenance& expected,
                                          const render::FilmState& empty, const StartPoint& start,
-                                         const RenderLimits& limits, Observer& observer) {
+                                         const RenderLimits& limits, Observer& observer, std::size_t maxMemory) {
   const std::filesystem::path& path = request.file;
   if (!std::filesystem::exists(path)) {
     if (request.resume)
@@ -44,7 +44,7 @@ std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const
   StoredFilm stored;
   const render::FilmFile& file = stored.file;
   try {
-    stored = readStoredFilm(path);
+    stored = readStoredFilm(path, maxMemory);
     requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render",
                         "", Remedy::startOver);
     if (!render::sameArrays(file.film, empty)) throw FileError(path, "its outputs differ from those of the program");
@@ -66,9 +66,10 @@ std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const
 }
 
 std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const render::FilmState& empty,
-                                           const StartPoint& start, const RenderLimits& limits, Observer& observer) {
+                                           const StartPoint& start, const RenderLimits& limits, Observer& observer,
+                                           std::size_t maxMemory) {
   removeLeftovers(request_.file);
-  std::optional<StoredFilm> stored = loadCheckpoint(request_, expected, empty, start, limits, observer);
+  std::optional<StoredFilm> stored = loadCheckpoint(request_, expected, empty, start, limits, observer, maxMemory);
   if (stored) {
     savedCounts_ = stored->file.film.counts;
     savedSamples_ = averageSamples(stored->file.film);

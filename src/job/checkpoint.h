@@ -19,10 +19,10 @@ namespace quintet::job {
 
 // The film to resume from; empty if it does not exist or the request starts over. `expected`: provenance and arrays of this
 // render. Only reads the file, without a lock. Throws FileError if the file belongs to a different render, is damaged, or
-// would be lost.
+// would be lost; MemoryError if it requests more than `maxMemory` (render::readFilm).
 std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const Provenance& expected,
                                          const render::FilmState& empty, const StartPoint& start,
-                                         const RenderLimits& limits, Observer& observer);
+                                         const RenderLimits& limits, Observer& observer, std::size_t maxMemory = 0);
 
 class Checkpoint {
  public:
@@ -31,7 +31,7 @@ class Checkpoint {
 
   // Like loadCheckpoint(). Also removes temporary files that an interrupted save() left behind.
   std::optional<StoredFilm> load(const Provenance& expected, const render::FilmState& empty, const StartPoint& start,
-                                 const RenderLimits& limits, Observer& observer);
+                                 const RenderLimits& limits, Observer& observer, std::size_t maxMemory = 0);
 
   bool isDue() const { return clock_.seconds() - lastSave_ >= request_.seconds; }
   // Replaces the file. A failure to write is a warning, once: the previous checkpoint is still there.

@@ -18,12 +18,13 @@ namespace {
 using render::FilmFacts;
 using render::FilmFile;
 
-StoredFilm readFilmToTest(const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = readFile(path);
+StoredFilm readFilmToTest(const std::filesystem::path& path, std::size_t maxMemory) {
+  MemoryBudget budget(path, maxMemory);
+  const std::vector<std::byte> bytes = readFile(path, budget);
   if (!bytes.empty() && !render::isFilmFile(bytes))
     throw FileError(path,
                     "is not a film (.qfilm); the test requires films, because an image does not record its noise");
-  return decodeStoredFilm(bytes, path);
+  return decodeStoredFilm(bytes, path, budget);
 }
 
 bool matches(const std::string& fact, const std::string& name) { return fact == name || fact.starts_with(name + " "); }
@@ -80,11 +81,12 @@ std::uint64_t FilmComparison::samples(std::size_t film) const {
 }
 
 FilmComparison compareFilms(const std::filesystem::path& a, const std::filesystem::path& b,
-                            const std::vector<std::string>& mayDiffer, const render::ZTestOptions& options) {
+                            const std::vector<std::string>& mayDiffer, const render::ZTestOptions& options,
+                            std::size_t maxMemory) {
   FilmComparison c;
   c.files = {a, b};
   for (std::size_t i = 0; i < 2; ++i) {
-    StoredFilm stored = readFilmToTest(c.files[i]);
+    StoredFilm stored = readFilmToTest(c.files[i], maxMemory);
     c.films[i] = std::move(stored.file);
     c.provenance[i] = std::move(stored.provenance);
   }

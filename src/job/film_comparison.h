@@ -26,10 +26,11 @@ struct FilmComparison {
 };
 
 // `mayDiffer`: names of identity facts, or their first words, in which the films may differ besides seed and planned
-// samples. Throws FileError for files that are not films or whose identities differ, UsageError for unknown names, Error if
+// samples. `maxMemory` of each film: see render::readFilm. Throws FileError for files that are not films or whose identities differ, UsageError for unknown names, Error if
 // the films cannot be tested.
 FilmComparison compareFilms(const std::filesystem::path& a, const std::filesystem::path& b,
-                            const std::vector<std::string>& mayDiffer, const render::ZTestOptions& options);
+                            const std::vector<std::string>& mayDiffer, const render::ZTestOptions& options,
+                            std::size_t maxMemory = 0);
 
 }  // namespace quintet::job
 #endif

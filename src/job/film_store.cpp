@@ -50,11 +50,14 @@ std::string differencesText(const FilmFacts& found, const FilmFacts& expected) {
 
 }  // namespace
 
-StoredFilm readStoredFilm(const std::filesystem::path& path) { return decodeStoredFilm(readFile(path), path); }
+StoredFilm readStoredFilm(const std::filesystem::path& path, std::size_t maxMemory) {
+  MemoryBudget budget(path, maxMemory);
+  return decodeStoredFilm(readFile(path, budget), path, budget);
+}
 
-StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path, MemoryBudget& budget) {
   StoredFilm stored;
-  stored.file = render::decodeFilm(bytes, path);
+  stored.file = render::decodeFilm(bytes, path, budget);
   try {
     stored.provenance = fromFacts(stored.file.identity, stored.file.notes);
   } catch (const UsageError& error) {
@@ -74,12 +77,13 @@ void requireSameIdentity(const FilmFacts& found, const FilmFacts& expected, cons
       remedy);
 }
 
-void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, const render::SampleCounts& samples) {
+void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, const render::SampleCounts& samples,
+                std::size_t maxMemory) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return;
   render::FilmFile found;
   try {
-    found = render::readFilm(file);
+    found = render::readFilm(file, maxMemory);
   } catch (const FileError& error) {
     throw FileError(file, error.location(), error.problem(), Remedy::overwrite);
   }

@@ -22,9 +22,10 @@ struct StoredFilm {
 };
 
 // Throws FileError for a file that is not a film, is damaged, or whose facts are invalid or do not fit its arrays.
-StoredFilm readStoredFilm(const std::filesystem::path& path);
+// `maxMemory`: see render::readFilm; more is a MemoryError.
+StoredFilm readStoredFilm(const std::filesystem::path& path, std::size_t maxMemory = 0);
 // `path`: for messages only.
-StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path);
+StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path, MemoryBudget&);
 
 // Throws FileError "belongs to `owner` (seed 3, expected 7); CONSEQUENCE" unless the identities agree. `owner`: "a
 // different render"; an empty consequence is omitted.
@@ -33,9 +34,10 @@ void requireSameIdentity(const render::FilmFacts& found, const render::FilmFacts
                          Remedy remedy);
 
 // Throws FileError if `file` is a film that holds samples which a film of this identity with these samples would not
-// hold: they would be lost. Sample counts of an adaptive render that are not known yet have no cells.
+// hold: they would be lost. Sample counts of an adaptive render that are not known yet have no cells. `maxMemory`: see
+// render::readFilm.
 void rejectLoss(const std::filesystem::path& file, const render::FilmFacts& identity,
-                const render::SampleCounts& samples);
+                const render::SampleCounts& samples, std::size_t maxMemory = 0);
 
 // "samples 0–15", "samples 0–15 and 32", "sample 32"; "no samples".
 std::string rangesText(const std::vector<render::SampleRange>& ranges);

@@ -30,6 +30,7 @@ render::RenderSettings settingsFor(const program::Program& program, const scene:
   settings.region = request.region;
   settings.seed = request.seed;
   settings.parameters = parameterValues(program, request);
+  settings.maxMemory = request.load.maxMemory;
   settings.outputs = request.outputs;
   settings.instrument = true;
   settings.timeoutSeconds = request.launchTimeout > 0 ? request.launchTimeout : kTimeout;
@@ -48,7 +49,8 @@ std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& 
                                         const RenderRequest& request,
                                         const std::function<void(const Diagnostic&)>& hung) {
   const render::RenderSettings settings = settingsFor(program, scene, request);
-  const scene::Environment environment = chooseEnvironment(scene, request.environment).environment;
+  const scene::Environment environment =
+      chooseEnvironment(scene, request.environment, request.load.maxMemory).environment;
   gpu::Context& context = engine.context();
   render::DeviceScene deviceScene(context, std::move(scene), environment);
   CheckedProgram checked =

@@ -58,11 +58,11 @@ std::string joinLayers(const std::string& a, const std::string& b) {
 
 class Merger {
  public:
-  explicit Merger(Observer& observer) : observer_(observer) {}
+  Merger(Observer& observer, std::size_t maxMemory) : observer_(observer), maxMemory_(maxMemory) {}
 
   void add(const std::filesystem::path& path) {
     observer_.stage("reading " + path.string());
-    StoredFilm stored = readStoredFilm(path);
+    StoredFilm stored = readStoredFilm(path, maxMemory_);
     FilmFile& part = stored.file;
     const Provenance& provenance = stored.provenance;
     parts_.push_back({path, part.film.counts.ranges});
@@ -152,6 +152,7 @@ class Merger {
   }
 
   Observer& observer_;
+  const std::size_t maxMemory_;
   FilmFile whole_;
   Provenance provenance_;
   std::vector<Part> parts_;
@@ -172,9 +173,9 @@ std::vector<SampleRange> missingSamples(const render::SampleCounts& counts, std:
 
 }  // namespace
 
-RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer,
-                   const std::string& commandLine) {
-  Merger merger(observer);
+RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer, const std::string& commandLine,
+                   std::size_t maxMemory) {
+  Merger merger(observer, maxMemory);
   for (const std::filesystem::path& part : parts) merger.add(part);
   FilmFile& film = merger.film();
   if (film.film.counts.ranges.empty()) throw Error("the films contain no samples");

@@ -16,8 +16,9 @@ namespace quintet::job {
 // (device, exposure, …) are joined or taken from the part with the first samples, and reported as notes. Throws FileError
 // for a part that cannot be read, belongs to a different render, or shares samples with another part; Error if there are
 // no samples at all. `commandLine` becomes that of the result, for metadata; empty keeps that of the first part.
+// `maxMemory` of each part: see render::readFilm; more is a MemoryError.
 RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer,
-                   const std::string& commandLine = {});
+                   const std::string& commandLine = {}, std::size_t maxMemory = 0);
 
 // What the merged film lacks: "missing: samples 16–31"; empty if it is complete.
 std::string missingText(const RenderResult& merged);

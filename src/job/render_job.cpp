@@ -227,6 +227,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.shutter = shutter();
   settings.cameraAt = movingCamera();
   settings.parameters = job_.parameters;
+  settings.maxMemory = request.load.maxMemory;
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   if (request.launchSeconds > 0) settings.launchSeconds = request.launchSeconds;
@@ -440,7 +441,8 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   beginFilm();
   if (checkpoint_) {
     const render::FilmState empty = renderer_->saveFilm();
-    if (const std::optional<StoredFilm> film = checkpoint_->load(provenance_, empty, start_, limits, observer)) {
+    if (const std::optional<StoredFilm> film =
+            checkpoint_->load(provenance_, empty, start_, limits, observer, request.load.maxMemory)) {
       renderer_->restoreFilm(film->file.film);
       start_ = resumePoint(*film, provenance_, request.checkpoint.file, start_, observer);
     }
@@ -450,7 +452,7 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
     const auto begin = static_cast<std::uint32_t>(start_.begin),
                end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), start_.done));
     rejectLoss(request.film, toFacts(provenance_, ProvenanceField::Role::identity),
-               {{{begin, end}}, renderer_->film().counts().cellBatches});
+               {{{begin, end}}, renderer_->film().counts().cellBatches}, request.load.maxMemory);
   }
   return start_;
 }
@@ -868,8 +870,8 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
   RenderLimits limits;
   limits.adaptive = job_.request.limits.adaptive;
   const StartPoint first = firstSample();
-  const std::optional<StoredFilm> film =
-      loadCheckpoint(request, provenance_, renderer_->saveFilm(), first, withinPart(limits), observer);
+  const std::optional<StoredFilm> film = loadCheckpoint(request, provenance_, renderer_->saveFilm(), first,
+                                                        withinPart(limits), observer, job_.request.load.maxMemory);
   if (!film) return false;
   restart();
   renderer_->restoreFilm(film->file.film);

@@ -159,7 +159,7 @@ void RenderJob::setEnvironment(const EnvironmentRequest& environment) {
   std::optional<EnvironmentChoice> plain;
   bool rebuild = !scene_;
   if (!rebuild && environment.source != scene_->environmentSource) {
-    plain = chooseEnvironment(hostScene(), environment);
+    plain = chooseEnvironment(hostScene(), environment, job_.request.load.maxMemory);
     rebuild = !plain->environment.image.empty();
   }
   job_.request.environment = environment;

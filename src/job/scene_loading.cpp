@@ -19,7 +19,7 @@ LoadedScene load(const SceneSource& source, const RenderRequest& request,
   scene::PendingScene pending = beginLoading(source);
   const auto chooseLight = [&](const scene::Scene& scene) {
     const Stopwatch watch;
-    loaded.environment = chooseEnvironment(scene, request.environment);
+    loaded.environment = chooseEnvironment(scene, request.environment, request.load.maxMemory);
     features.set_value(render::sceneFeatures(scene, loaded.environment.environment));
     loaded.viewSeconds = watch.seconds();
   };

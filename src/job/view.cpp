@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/memory_budget.h"
 #include "base/parse.h"
 #include "base/suggestion.h"
 #include "base/text.h"
@@ -75,13 +76,14 @@ float distanceTo(const Bounds3& bounds, const scene::Camera& camera) {
   return distance > 0.0f ? distance : camera.focusDistance;
 }
 
-scene::Environment readEnvironment(const std::string& source) {
+scene::Environment readEnvironment(const std::string& source, std::size_t maxMemory) {
   scene::Environment environment;
   environment.name = source;
   environment.present = true;
   const bool isColor = source.find(',') != std::string::npos && !std::filesystem::exists(source);
   if (!isColor) {
-    environment.image = io::toFloat(io::readImage(source));
+    MemoryBudget budget(source, maxMemory);
+    environment.image = io::readRadiance(source, budget);
     return environment;
   }
   const std::optional<vec3> color = parseVec3(source);
@@ -134,7 +136,8 @@ uvec2 chooseImageSize(uvec2 requested, const scene::Camera& camera) {
                         : uvec2{rounded(kDefaultWidth * aspect), kDefaultWidth};
 }
 
-EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request) {
+EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request,
+                                    std::size_t maxMemory) {
   EnvironmentChoice chosen;
   if (request.source == "none") {
     chosen.environment.present = true;
@@ -142,7 +145,7 @@ EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const Environment
   } else if (request.source == "default") {
     chosen = {scene::defaultEnvironment(), "default"};
   } else if (!request.source.empty()) {
-    chosen = {readEnvironment(request.source), request.source};
+    chosen = {readEnvironment(request.source, maxMemory), request.source};
   } else if (scene.environment.present) {
     chosen = {scene.environment, "of the scene"};
   } else if (!scene::hasEmitters(scene)) {

@@ -35,9 +35,10 @@ struct EnvironmentChoice {
   float sourceRotation = 0;  // radians
 };
 
-// The requested one, else the scene's, else the default one if the scene has no lights, else none. Throws FileError,
-// UsageError.
-EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request);
+// The requested one, else the scene's, else the default one if the scene has no lights, else none. `maxMemory`: bytes
+// that the file of the environment can request (scene::LoadOptions). Throws FileError, MemoryError, UsageError.
+EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request,
+                                    std::size_t maxMemory = 0);
 
 // Sets intensity and rotation for a request with the same source.
 void adjust(EnvironmentChoice& choice, const EnvironmentRequest& request);

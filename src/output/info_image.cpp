@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "io/codec.h"
@@ -175,8 +176,8 @@ std::string factsText(const render::FilmFacts& facts, const render::FilmFacts& o
   return text;
 }
 
-std::string filmInfo(const std::filesystem::path& file, Bytes bytes, bool json) {
-  const auto [film, provenance] = job::decodeStoredFilm(bytes, file);
+std::string filmInfo(const std::filesystem::path& file, Bytes bytes, bool json, MemoryBudget& budget) {
+  const auto [film, provenance] = job::decodeStoredFilm(bytes, file, budget);
   const render::Region& region = film.film.region;
   if (!json) {
     const std::string planned =
@@ -231,10 +232,11 @@ std::string imageInfo(const std::filesystem::path& file, Bytes bytes, bool json)
 }  // namespace
 
 std::string fileInfo(const std::filesystem::path& file, bool json, const scene::LoadOptions& options) {
-  const std::vector<std::byte> bytes = readFile(file);
+  MemoryBudget budget(file, options.maxMemory);
+  const std::vector<std::byte> bytes = readFile(file, budget);
   if (scene::sceneFormat(file, bytes) != scene::SceneFormat::none) return sceneInfo(file, json, options);
   if (io::isOpenExr(bytes)) return exrInfo(file, bytes, json);  // also of layers that are not an image
-  if (render::isFilmFile(bytes)) return filmInfo(file, bytes, json);
+  if (render::isFilmFile(bytes)) return filmInfo(file, bytes, json, budget);
   return imageInfo(file, bytes, json);
 }
 

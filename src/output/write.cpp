@@ -130,10 +130,10 @@ void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>&
   }
 }
 
-void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result) {
+void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result, std::size_t maxMemory) {
   if (plan.kind != FileKind::film) return;
   job::rejectLoss(plan.request.file, job::toFacts(result.provenance, job::ProvenanceField::Role::identity),
-                  result.film->counts());
+                  result.film->counts(), maxMemory);
 }
 
 }  // namespace quintet::output

@@ -28,8 +28,9 @@ io::Image displayImage(const OutputPlan& plan, const job::FilmView& film);
 // Adds the files of one more frame. A file that was written again is listed once.
 void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more);
 
-// Throws FileError if the plan's film would lose samples that its file holds (job::rejectLoss).
-void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result);
+// Throws FileError if the plan's film would lose samples that its file holds (job::rejectLoss, also for
+// `maxMemory`).
+void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result, std::size_t maxMemory = 0);
 
 }  // namespace quintet::output
 #endif

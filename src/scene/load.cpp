@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "base/text.h"
 #include "scene/gltf/gltf.h"
 #include "scene/toml/scene_toml.h"
@@ -29,7 +30,10 @@ SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::
 PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& options) {
   // The content is read only if the name does not determine the format.
   SceneFormat format = sceneFormat(file, {});
-  if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
+  if (format == SceneFormat::none) {
+    MemoryBudget budget(file, options.maxMemory);
+    format = sceneFormat(file, readFile(file, budget));
+  }
   if (format == SceneFormat::toml && options.animation && !options.animation->empty())
     throw UsageError(
         fmt::format("{}: no animation '{}': only glTF files have named animations; a scene file has keyframes",

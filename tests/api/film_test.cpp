@@ -83,6 +83,11 @@ TEST(ApiFilm, SurvivesAFile) {
   EXPECT_EQ(loaded.layer("albedo").values, film.layer("albedo").values);
   EXPECT_EQ(loaded.layers(), film.layers());
   EXPECT_THROW(Film::load(temporary("missing.qfilm")), FileError);
+  EXPECT_THROW(Film::load(file, 1000), MemoryError);
+  EXPECT_THROW(Film::merge({file}, 1000), MemoryError);
+  settings.maxMemory = 1000;
+  Renderer limited(device(), lampScene(), pathTracer(), settings);
+  EXPECT_THROW(limited.resume(file), MemoryError);
   std::filesystem::remove(file);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes from memory: what they hold, what they reject, and that they render like the same scene from a file.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -216,6 +217,21 @@ TEST(ApiScene, TexturesCoverTheMesh) {
   EXPECT_NEAR(left[1], 0, 1e-3);
   EXPECT_NEAR(right[0], 0, 1e-3);
   EXPECT_NEAR(right[1], 1, 1e-3);
+}
+
+// The header states 192 MiB of pixels, which do not follow.
+TEST(ApiScene, LimitsTheMemoryOfFiles) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("quintet_lying_" + std::to_string(::getpid()) + ".hdr");
+  std::ofstream(file) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n";
+  constexpr std::size_t kLimit = std::size_t{1} << 20;
+  Scene scene;
+  EXPECT_THROW(scene.addTexture(file, kLimit), MemoryError);
+  EXPECT_THROW(scene.setEnvironment(file, kLimit), MemoryError);
+  const std::string text = "[environment]\nimage = \"" + file.filename().string() + "\"\n";
+  EXPECT_THROW(Scene::fromToml(text, file.parent_path(), kLimit), MemoryError);
+  EXPECT_THROW(scene.addTexture(file), FileError) << "the default limit is that of the machine";
+  std::filesystem::remove(file);
 }
 
 TEST(ApiScene, FromTomlReportsTheLine) {

@@ -83,11 +83,7 @@ void declareLoading(OptionTable& table, LoadTexts& texts, scene::LoadOptions& op
                       "factors of the material (default: error)",
               .target = &texts.missingTextures,
               .candidates = {.names = {"error", "warn"}}},
-             {.names = "--max-memory",
-              .value = "BYTES",
-              .help = "Memory that a scene file can request, with K, M, G or T for powers of 1024 (default: "
-                      "80 % of the memory)",
-              .target = &texts.maxMemory},
+             {.names = "--max-memory", .value = "BYTES", .help = kMaxMemoryHelp, .target = &texts.maxMemory},
              {.names = "--allow-external",
               .help = "Read buffers and images of glTF files from outside of their folders",
               .target = &options.allowExternal}});

@@ -44,6 +44,9 @@ struct RenderTexts {
 
 inline constexpr const char* kStrictHelp =
     "Fail if a part of the scene file is ignored or repaired, with a list of these parts";
+inline constexpr const char* kMaxMemoryHelp =
+    "Memory that a file can request while it is read, with K, M, G or T for powers of 1024 (default: 80 % of the "
+    "memory)";
 // How scene files are read; of all commands that load scenes.
 void declareLoading(OptionTable& table, LoadTexts& texts, scene::LoadOptions& options,
                     const char* strictHelp = kStrictHelp);

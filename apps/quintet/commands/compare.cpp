@@ -7,9 +7,11 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "base/text.h"
 #include "cli/failure.h"
 #include "cli/parser.h"
+#include "cli/render_options.h"
 #include "cli/signals.h"
 #include "cli/values.h"
 #include "io/codec.h"
@@ -24,7 +26,7 @@ namespace quintet::cli {
 namespace {
 
 struct Options {
-  std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
+  std::string a, b, output, sideBySide, metric = "mae8", max, gammaB, maxMemory;
   std::string level, block, tolerance;
   std::vector<std::string> mayDiffer;
   bool zTest = false;
@@ -93,6 +95,7 @@ OptionTable declare(Options& options) {
               .value = "X",
               .help = "B is encoded by this power instead of the sRGB curve",
               .target = &options.gammaB},
+             {.names = "--max-memory", .value = "BYTES", .help = kMaxMemoryHelp, .target = &options.maxMemory},
              {.names = "--json", .help = "Print one JSON object instead of text", .target = &options.json}});
   table.add(
       "Films",
@@ -145,11 +148,14 @@ const output::Measure& findMeasure(const std::vector<output::Measure>& all, cons
   return all[parseChoice("--metric", name, names)];
 }
 
-io::Image readInput(const std::string& file, const std::optional<std::string>& layer) {
-  const std::vector<std::byte> bytes = readFile(file);
+std::size_t memoryLimit(const Options& options) { return parseBytes("--max-memory", options.maxMemory).value_or(0); }
+
+io::Image readInput(const std::string& file, const std::optional<std::string>& layer, std::size_t maxMemory) {
+  MemoryBudget budget(file, maxMemory);
+  const std::vector<std::byte> bytes = readFile(file, budget);
   if (render::isFilmFile(bytes))
     throw FileError(file, "is a film; use --z-test to compare two films, or 'quintet merge' to write its image");
-  return layer ? io::decodeExrLayer(bytes, file, *layer) : io::decodeImage(bytes, file);
+  return layer ? io::decodeExrLayer(bytes, file, *layer, budget) : io::decodeImage(bytes, file, budget);
 }
 
 void writePng(const std::string& file, const io::Image& image) {
@@ -172,7 +178,8 @@ int compareFilms(const Options& options) {
   test.level = parseReal("--level", options.level, 1e-12, 0.5).value_or(test.level);
   test.block = static_cast<std::uint32_t>(parseInteger("--block", options.block, 4, 4096).value_or(test.block));
   test.tolerance = parseReal("--tolerance", options.tolerance, 0, 1).value_or(test.tolerance);
-  const job::FilmComparison comparison = job::compareFilms(options.a, options.b, options.mayDiffer, test);
+  const job::FilmComparison comparison =
+      job::compareFilms(options.a, options.b, options.mayDiffer, test, memoryLimit(options));
   if (!options.output.empty())
     writePng(options.output, io::colorMap(render::zTestMap(comparison.test, comparison.films[0].film.region)));
   writeFile("-", options.json ? output::comparisonJson(comparison) : output::comparisonText(comparison));
@@ -184,8 +191,8 @@ int compareFilms(const Options& options) {
 
 int compareImages(const Options& options) {
   const std::optional<double> limit = parseReal("--max", options.max, 0.0, 1e30);
-  io::Image a = readInput(options.a, options.layer);
-  io::Image b = readInput(options.b, options.layer);
+  io::Image a = readInput(options.a, options.layer, memoryLimit(options));
+  io::Image b = readInput(options.b, options.layer, memoryLimit(options));
   if (const auto gamma = parseReal("--gamma-b", options.gammaB, 0.1, 10.0))
     b = io::decodePower(b, static_cast<float>(*gamma));
   if (options.resize) io::resizeToSmaller(a, b);

@@ -26,6 +26,7 @@ struct Options {
   ConsoleOptions console;
   bool partial = false;
   bool force = false;
+  std::size_t maxMemory = 0;  // as of scene::LoadOptions
 };
 
 OptionTable declare(Options& options, RenderTexts& texts) {
@@ -45,6 +46,7 @@ OptionTable declare(Options& options, RenderTexts& texts) {
               .target = &options.output.allOutputs},
              {.names = "--partial", .help = "Write the image even if samples are missing", .target = &options.partial},
              {.names = "--force", .help = "Overwrite a film although its samples are lost", .target = &options.force},
+             {.names = "--max-memory", .value = "BYTES", .help = kMaxMemoryHelp, .target = &texts.load.maxMemory},
              {.names = "--json",
               .help = "Print one JSON object on standard output at the end",
               .target = &options.console.json},
@@ -70,6 +72,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
     throw UsageError("--aov list: use 'quintet render --aov list' to list the layers of a program");
   options.output.file = texts.output;
   convertOutput(texts, options.output);
+  options.maxMemory = parseBytes("--max-memory", texts.load.maxMemory).value_or(0);
   RenderOptions standardOutput;
   standardOutput.output.file = options.output.file;
   standardOutput.console = options.console;
@@ -91,7 +94,7 @@ int mergeCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
   Console console(options->console);
-  job::RenderResult result = job::merge(options->parts, console, commandLine("merge", arguments));
+  job::RenderResult result = job::merge(options->parts, console, commandLine("merge", arguments), options->maxMemory);
   const output::OutputPlan plan = output::planOutputs(options->output, result, options->parts.front());
   if (const std::string missing = job::missingText(result); !missing.empty()) {
     if (plan.kind != output::FileKind::film && !options->partial)
@@ -99,7 +102,7 @@ int mergeCommand(Arguments arguments) {
     console.note(missing);
   }
   if (const std::string text = output::ignoredDisplayText(options->output); !text.empty()) console.note(text);
-  if (!options->force) output::checkFilmLoss(plan, result);
+  if (!options->force) output::checkFilmLoss(plan, result, options->maxMemory);
   output::storeNotes(plan, result);
   const std::vector<output::WrittenFile> files = output::writeOutputs(plan, result, console);
   addWarnings(result, console);

@@ -195,7 +195,8 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
     job::RenderResult result = job.run(options.request.limits, console);
     console.finalImage(*result.film);
     try {
-      if (!options.request.overwriteFilm) output::checkFilmLoss(plan, result);  // the render can have stopped early
+      if (!options.request.overwriteFilm)
+        output::checkFilmLoss(plan, result, options.request.load.maxMemory);  // the render can have stopped early
       if (!options.request.frames.every) write(result);
     } catch (...) {
       job.outputsFailed(result, console);

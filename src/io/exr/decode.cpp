@@ -7,6 +7,7 @@
 #include <array>
 #include <new>
 
+#include "base/memory_budget.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "io/exr/attributes.h"
@@ -75,15 +76,20 @@ Image toImage(const std::vector<ExrChannel>& channels, const Imath::Box2i& displ
   return image;
 }
 
+ImageInfo infoOf(const Imf::Header& header, std::size_t channels) {
+  const Imath::Box2i& display = header.displayWindow();
+  return {extent(display.min.x, display.max.x),
+          extent(display.min.y, display.max.y),
+          static_cast<std::uint32_t>(channels),
+          PixelType::f32,
+          {},
+          channelBytes(header, channels)};
+}
+
 ImageInfo probe(const Source& source) {
   return withExrFile(source, [&](Imf::MultiPartInputFile& file) {
     const PartChannels choice = chooseImage(source, file);
-    const Imath::Box2i& display = file.header(choice.part).displayWindow();
-    return ImageInfo{extent(display.min.x, display.max.x),
-                     extent(display.min.y, display.max.y),
-                     static_cast<std::uint32_t>(choice.channels.size()),
-                     PixelType::f32,
-                     {}};
+    return infoOf(file.header(choice.part), choice.channels.size());
   });
 }
 
@@ -208,6 +214,12 @@ std::string_view exrLayerOf(std::string_view channel) {
 }
 
 Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameForErrors, const std::string& layer) {
+  MemoryBudget budget(nameForErrors, 0, Remedy::none);
+  return decodeExrLayer(bytes, nameForErrors, layer, budget);
+}
+
+Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameForErrors, const std::string& layer,
+                     MemoryBudget& budget) {
   const Source source{bytes, nameForErrors};
   if (!isExr(source)) source.fail("not an OpenEXR file: it has no layers");
   try {
@@ -219,6 +231,8 @@ Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameFo
                                 found.channels.size(), found.channels.front()));
       const Imf::Header& header = file.header(found.part);
       checkChannels(source, header, found.channels, kMaxImageBytes);
+      budget.take(infoOf(header, found.channels.size()).byteCount());
+      const TemporaryMemory temporary(budget, channelBytes(header, found.channels.size()));
       return toImage(readChannels(source, file, found.part, found.channels), header.displayWindow());
     });
   } catch (const std::bad_alloc&) {

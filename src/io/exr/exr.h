@@ -15,6 +15,10 @@
 #include "base/math.h"
 #include "io/image.h"
 
+namespace quintet {
+class MemoryBudget;
+}
+
 namespace quintet::io {
 
 // Stored type of a channel. Compositing programs convert u32 to floats.
@@ -118,6 +122,8 @@ std::string_view exrLayerOf(std::string_view channel);
 // that channel. Two channels become three with a last one of 0, because an image of two channels is gray and alpha.
 // Throws UsageError for an unknown layer, and the FileErrors of decodeExr.
 Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameForErrors, const std::string& layer);
+Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameForErrors, const std::string& layer,
+                     MemoryBudget&);
 
 }  // namespace quintet::io
 #endif

@@ -259,6 +259,14 @@ void checkChannels(const Source& source, const Imf::Header& header, const std::v
                         kBestRatio);
 }
 
+std::size_t channelBytes(const Imf::Header& header, std::size_t count) {
+  const auto pixels = [](const Imath::Box2i& box) {
+    return std::size_t{extent(box.min.x, box.max.x)} * extent(box.min.y, box.max.y);
+  };
+  const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
+  return count * sizeof(float) * (pixels(data) + (data == display ? 0 : pixels(display)));
+}
+
 std::vector<ExrChannel> readChannels(const Source& source, Imf::MultiPartInputFile& file, int index,
                                      const std::vector<std::string>& names) {
   const Imf::Header& header = file.header(index);

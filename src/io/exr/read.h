@@ -88,6 +88,9 @@ std::string fullChannelName(const Imf::Header& header, bool firstPart, const std
 void checkChannels(const Source& source, const Imf::Header& header, const std::vector<std::string>& names,
                    std::uint64_t maxBytes);
 
+// Bytes that readChannels() allocates for this many channels of a part.
+std::size_t channelBytes(const Imf::Header& header, std::size_t count);
+
 // Reads the channels in this order, cropped and padded with 0 to the display window. Call checkChannels first.
 std::vector<ExrChannel> readChannels(const Source& source, Imf::MultiPartInputFile& file, int part,
                                      const std::vector<std::string>& names);

@@ -333,7 +333,8 @@ void appendArray(std::vector<std::byte>& out, const std::vector<T>& values, std:
 // Reads the arrays in their order.
 class Payload {
  public:
-  Payload(const std::filesystem::path& file, Bytes bytes) : file_(file), bytes_(bytes) {}
+  Payload(const std::filesystem::path& file, Bytes bytes, MemoryBudget& budget)
+      : file_(file), bytes_(bytes), budget_(budget) {}
 
   FilmFile fill(FilmHeader header) {
     FilmState& film = header.file.film;
@@ -358,6 +359,7 @@ class Payload {
   void take(std::vector<T>& values, std::size_t count, std::size_t group = 1) {
     bool valid = blocksCanHold(count * sizeof(T), bytes_.size());
     if (valid) {
+      budget_.take(count * sizeof(T));
       values.resize(count);
       valid = takeBlocks(bytes_, std::as_writable_bytes(std::span(values)), sizeof(T) * group);
     }
@@ -366,6 +368,7 @@ class Payload {
 
   const std::filesystem::path& file_;
   Bytes bytes_;
+  MemoryBudget& budget_;
 };
 
 // Header and payload of a file whose length and checksum are valid.
@@ -440,11 +443,19 @@ bool isFilmFile(Bytes bytes) {
 }
 
 FilmFile decodeFilm(Bytes bytes, const std::filesystem::path& file) {
+  MemoryBudget budget(file, 0, Remedy::none);
+  return decodeFilm(bytes, file, budget);
+}
+
+FilmFile decodeFilm(Bytes bytes, const std::filesystem::path& file, MemoryBudget& budget) {
   const Parts parts = checkedParts(bytes, file);
-  return Payload(file, parts.payload).fill(HeaderReader(file, parts.header).read());
+  return Payload(file, parts.payload, budget).fill(HeaderReader(file, parts.header).read());
 }
 
 void writeFilm(const std::filesystem::path& path, const FilmFile& file) { writeFile(path, encodeFilm(file)); }
-FilmFile readFilm(const std::filesystem::path& path) { return decodeFilm(readFile(path), path); }
+FilmFile readFilm(const std::filesystem::path& path, std::size_t maxMemory) {
+  MemoryBudget budget(path, maxMemory);
+  return decodeFilm(readFile(path, budget), path, budget);
+}
 
 }  // namespace quintet::render

@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "render/film/film_state.h"
 
 namespace quintet::render {
@@ -58,13 +59,16 @@ std::vector<std::byte> encodeFilm(const FilmFile& file);
 // Returns whether the bytes start with the magic of a film file.
 bool isFilmFile(std::span<const std::byte> bytes);
 
-// Throws FileError for a file that is not a film file, has a different version, or is truncated or damaged. `file` is
-// used in messages only.
+// Throws FileError for a file that is not a film file, has a different version, or is truncated or damaged; MemoryError for
+// one whose header states more arrays than the budget allows. `file` is used in messages only. Without a budget, 80 % of
+// the machine's memory are the limit.
 FilmFile decodeFilm(std::span<const std::byte> bytes, const std::filesystem::path& file);
+FilmFile decodeFilm(std::span<const std::byte> bytes, const std::filesystem::path& file, MemoryBudget&);
 
 // Replaces the file atomically (base/file.h): readers see either the old or the new file.
 void writeFilm(const std::filesystem::path& path, const FilmFile& file);
-FilmFile readFilm(const std::filesystem::path& path);
+// `maxMemory`: bytes of host memory that the file can request, with its own bytes; 0 means 80 % of the machine's memory.
+FilmFile readFilm(const std::filesystem::path& path, std::size_t maxMemory = 0);
 
 }  // namespace quintet::render
 #endif

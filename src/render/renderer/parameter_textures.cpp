@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "base/memory_budget.h"
 #include "gpu/uploader.h"
 #include "io/codec.h"
 
@@ -16,19 +17,20 @@ io::Image white() {
   return image;
 }
 
-io::Image loadImage(const program::Program& program, const program::ImageValue& value) {
+io::Image loadImage(const program::Program& program, const program::ImageValue& value, std::size_t maxMemory) {
   if (value.file.empty()) return white();
-  if (!value.ofProgram) return io::readImage(value.file);
-  const auto own = program.files.find(value.file);
-  if (own == program.files.end()) return io::readImage(program.path(value.file));
-  return io::decodeImage(std::as_bytes(std::span(own->second)), program.path(value.file));
+  const std::string path = value.ofProgram ? program.path(value.file) : value.file;
+  MemoryBudget budget(path, maxMemory);
+  const auto own = value.ofProgram ? program.files.find(value.file) : program.files.end();
+  if (own == program.files.end()) return io::readImage(path, budget);
+  return io::decodeImage(std::as_bytes(std::span(own->second)), path, budget);
 }
 
 }  // namespace
 
 ParameterTextures::ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
-                                     const program::ParameterValues& values)
-    : context_(context), slots_(slots), images_(upload(program, values)) {
+                                     const program::ParameterValues& values, std::size_t maxMemory)
+    : context_(context), maxMemory_(maxMemory), slots_(slots), images_(upload(program, values)) {
   if (images_.empty()) return;
   sampler_ = gpu::Sampler(context, {});
   indices_ = slots_.acquire(images_.size());
@@ -49,7 +51,8 @@ std::deque<gpu::Image> ParameterTextures::upload(const program::Program& program
   if (wanted.empty()) return images;
   gpu::Uploader uploader(context_);
   for (const program::ImageValue& value : wanted)
-    addTexture(images, context_, uploader, loadImage(program, value), value.sRgb, "parameter " + value.parameter);
+    addTexture(images, context_, uploader, loadImage(program, value, maxMemory_), value.sRgb,
+               "parameter " + value.parameter);
   uploader.flush();
   return images;
 }

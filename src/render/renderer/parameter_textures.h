@@ -4,6 +4,7 @@
 #ifndef QUINTET_RENDER_RENDERER_PARAMETER_TEXTURES_H
 #define QUINTET_RENDER_RENDERER_PARAMETER_TEXTURES_H
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <span>
@@ -16,12 +17,13 @@ namespace quintet::render {
 
 class ParameterTextures {
  public:
-  // Reads and uploads the images. Throws FileError for a missing or broken image, and UsageError for too many.
+  // Reads and uploads the images. `maxMemory`: RenderSettings. Throws FileError for a missing or broken image, MemoryError for
+  // one above the limit, and UsageError for too many.
   ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
-                    const program::ParameterValues& values);
+                    const program::ParameterValues& values, std::size_t maxMemory);
   ~ParameterTextures();
   // Replaces the images by those of other values of the same program, in the same slots. No launch may use them. Throws
-  // FileError for a missing or broken image, and then changes nothing.
+  // FileError and MemoryError like the constructor, and then changes nothing.
   void replace(const program::Program& program, const program::ParameterValues& values);
   ParameterTextures(const ParameterTextures&) = delete;
   ParameterTextures& operator=(const ParameterTextures&) = delete;
@@ -34,6 +36,7 @@ class ParameterTextures {
   void setTextures();
 
   gpu::Context& context_;
+  std::size_t maxMemory_;
   TextureSlots& slots_;
   std::vector<std::uint32_t> indices_;
   std::deque<gpu::Image> images_;

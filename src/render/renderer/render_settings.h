@@ -48,6 +48,8 @@ struct RenderSettings {
   std::uint32_t plannedSamples = shared::kIndependentPixels;
   bool transparent = false;  // the background has alpha 0 instead of the environment
   program::ParameterValues parameters{{}};
+  // Bytes of host memory that an image of `parameters` can request; 0 means 80 % of the machine's memory.
+  std::size_t maxMemory = 0;
   std::vector<std::string> outputs;  // names of the optional outputs to render
   // For benchmarks: a buffer of shared::RayKinds, then rayRecordCapacity RayRecords per pixel. Null disables recording.
   const gpu::Buffer* rayRecords = nullptr;

@@ -37,7 +37,8 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
               settings_.profile),
       table_(linked_.makeTable(scene.facts().geometries)),
       film_(context_, scene.set(), compiler, settings_.region, runnable_.description, settings_.outputs),
-      parameterTextures_(context_, scene.parameterSlots(), runnable_.description, settings_.parameters),
+      parameterTextures_(context_, scene.parameterSlots(), runnable_.description, settings_.parameters,
+                         settings_.maxMemory),
       queue_(context_, settings_, statistics_) {
   statistics_.compileSeconds = runnable_.compiled.seconds;
   statistics_.pipelineSeconds = linked_.pipelineSeconds();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -118,10 +119,18 @@ bool decodeBase64(std::string_view text, FileBytes& out) {
   return text.find_first_not_of("= \r\n\t", i) == std::string_view::npos;
 }
 
-FileBytes decodeDataUri(const Document& document, std::string_view uri, std::string_view location) {
+// `count`: see Document::loadBeginning.
+FileBytes decodeDataUri(const Document& document, std::string_view uri, std::string_view location,
+                        std::size_t count = std::string_view::npos) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) document.fail(location, "the data URI has no comma");
-  const std::string_view data = uri.substr(comma + 1);
+  std::string_view data = uri.substr(comma + 1);
+  // A byte takes at most four characters: base64 with escapes. A part of an escape is cut off.
+  if (data.size() / 4 > count) {
+    data = data.substr(0, 4 * count);
+    if (const std::size_t escape = data.substr(data.size() - 2).find('%'); escape != data.npos)
+      data.remove_suffix(2 - escape);
+  }
   FileBytes bytes;
   if (uri.substr(0, comma).ends_with(";base64")) {
     // Percent escapes inside base64 are valid, although rare.
@@ -133,6 +142,7 @@ FileBytes decodeDataUri(const Document& document, std::string_view uri, std::str
     const auto raw = std::as_bytes(std::span(text));
     bytes.assign(raw.begin(), raw.end());
   }
+  bytes.resize(std::min(bytes.size(), count));
   return bytes;
 }
 
@@ -194,12 +204,6 @@ void checkNesting(const std::filesystem::path& file, std::string_view text) {
       throw FileError(file, lineAndColumn(text, i + 1),
                       fmt::format("more than {} nested arrays and objects", kMaxNesting));
   }
-}
-
-void takeFile(MemoryBudget& budget, const std::filesystem::path& file) {
-  std::error_code unknown;  // the file is then read without a size, for example from a pipe
-  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  if (!unknown) budget.take(size);
 }
 
 json parseJson(const std::filesystem::path& file, std::string_view text) {
@@ -334,12 +338,20 @@ FileBytes Document::loadUri(std::string_view uri, std::string_view location) con
     return decodeDataUri(*this, uri, location);
   }
   const std::filesystem::path path = fileOfUri(uri, location);
-  takeFile(*budget, path);
   try {
-    return readLargeFile(path);
+    return readLargeFile(path, *budget);
   } catch (const FileError& error) {
     fail(location, fmt::format("{} {}", percentDecode(uri), error.problem()));
   }
+}
+
+FileBytes Document::loadBeginning(std::string_view uri, std::string_view location, std::size_t count) const {
+  if (isDataUri(uri)) return decodeDataUri(*this, uri, location, count);
+  FileBytes bytes(count);
+  std::ifstream in(fileOfUri(uri, location), std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
 }
 
 std::filesystem::path Document::fileOfUri(std::string_view uri, std::string_view location) const {
@@ -395,8 +407,7 @@ Document readDocument(const std::filesystem::path& file, bool allowExternal, std
   document.allowExternal = allowExternal;
   document.file = file;
   document.files.push_back(file);
-  takeFile(*document.budget, file);
-  const FileBytes& bytes = document.storage.emplace_back(readLargeFile(file));
+  const FileBytes& bytes = document.storage.emplace_back(readLargeFile(file, *document.budget));
   const Container container = splitContainer(file, bytes);
   document.budget->take(kJsonMemory * container.json.size());
   checkNesting(file, container.json);

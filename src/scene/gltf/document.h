@@ -21,8 +21,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "scene/gltf/schema.h"
-#include "scene/memory_budget.h"
 #include "scene/model/scene.h"
 
 namespace quintet::scene {
@@ -64,6 +64,8 @@ struct Document {
   // Bytes of a data URI (RFC 2397), or of a file named by a relative path (RFC 3986). Throws FileError for any other
   // URI, and for a file outside of the folder unless allowExternal; nothing is fetched.
   FileBytes loadUri(std::string_view uri, std::string_view location) const;
+  // The same for at most the first `count` bytes, which do not count in the budget.
+  FileBytes loadBeginning(std::string_view uri, std::string_view location, std::size_t count) const;
   // The existing file of a URI that is not a data URI. Throws the FileErrors of loadUri without reading the file.
   std::filesystem::path fileOfUri(std::string_view uri, std::string_view location) const;
   // Path of a URI that is not a data URI: the decoded one, or if it does not exist the text itself, because some

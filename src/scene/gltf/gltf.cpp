@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/memory_budget.h"
 #include "base/stopwatch.h"
 #include "scene/animation/pose.h"
 #include "scene/gltf/accessor.h"
@@ -19,7 +20,6 @@
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/texture.h"
 #include "scene/gltf/variants.h"
-#include "scene/memory_budget.h"
 
 namespace quintet::scene {
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/memory_budget.h"
 #include "scene/load_options.h"
-#include "scene/memory_budget.h"
 #include "scene/model/scene.h"
 #include "scene/pending_scene.h"
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "scene/gltf/animations.h"
 #include "scene/gltf/mesh.h"
 #include "scene/gltf/nodes.h"
-#include "scene/memory_budget.h"
 
 namespace quintet::scene {
 

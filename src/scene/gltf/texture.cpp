@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <numeric>
 #include <type_traits>
 
@@ -33,21 +32,12 @@ Sampler readSampler(const Document& document, int index) {
           sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? Filter::nearest : Filter::linear};
 }
 
-io::Image decode(std::span<const std::byte> bytes, const std::string& location, MemoryBudget& budget) {
-  budget.take(io::probeImage(bytes, location).byteCount());
-  return io::decodeImage(bytes, location);
-}
-
-// The beginning of an image in a separate file, far more than the header of a KTX2 file, so that the file is not read twice.
-// The whole image for a data URI, and for a file in another format.
+// The beginning of an image, far more than the header of a KTX2 file, so that the image is not read twice. The whole image
+// in another format.
 FileBytes headerOf(const Document& document, const std::string& uri, const std::string& location) {
-  constexpr std::streamsize kHeader = 65536;
+  constexpr std::size_t kHeader = 65536;
   constexpr std::string_view kKtx = "\xABKTX";
-  if (isDataUri(uri)) return document.loadUri(uri, location);
-  FileBytes bytes(kHeader);
-  std::ifstream file(document.fileOfUri(uri, location), std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), kHeader);
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  const FileBytes bytes = document.loadBeginning(uri, location, kHeader);
   const bool isKtx = bytes.size() >= kKtx.size() && std::memcmp(bytes.data(), kKtx.data(), kKtx.size()) == 0;
   return isKtx ? bytes : document.loadUri(uri, location);
 }
@@ -120,11 +110,11 @@ NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& 
   result.name = fmt::format("{}: {}", document.file.filename().string(), location);
   try {
     if (source.bufferView != kNone) {
-      result.image = decode(document.view(source.bufferView), location, budget);
+      result.image = io::decodeImage(document.view(source.bufferView), location, budget);
     } else {
       const FileBytes bytes = document.loadUri(source.uri, location + "/uri");
       if (!isDataUri(source.uri)) result.name = document.pathOfUri(source.uri).string();
-      result.image = decode(bytes, location, budget);
+      result.image = io::decodeImage(bytes, location, budget);
     }
   } catch (const FileError& error) {
     if (error.file() == document.file) throw;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "scene/gltf/document.h"
-#include "scene/memory_budget.h"
 
 namespace quintet::scene {
 

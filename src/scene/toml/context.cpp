@@ -38,9 +38,7 @@ std::filesystem::path SceneTomlContext::resolvePath(const TomlValue& at, const s
 }
 
 io::Image SceneTomlContext::readImage(const std::filesystem::path& path) {
-  const std::vector<std::byte> bytes = readFile(path);
-  budget.take(bytes.size() + io::probeImage(bytes, path.string()).byteCount());
-  io::Image image = io::decodeImage(bytes, path.string());
+  io::Image image = io::readImage(path, budget);
   scene.report.files.push_back(path);
   return image;
 }

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "base/memory_budget.h"
 #include "base/toml_reader.h"
 #include "io/image.h"
 #include "scene/load_options.h"
-#include "scene/memory_budget.h"
 #include "scene/model/scene.h"
 
 namespace quintet::scene {

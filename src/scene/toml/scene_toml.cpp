@@ -5,11 +5,15 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "scene/model/validate.h"
 #include "scene/toml/context.h"
 
 namespace quintet::scene {
 namespace {
+
+// Bytes that parsing requires for each byte of text: 90 for a list of numbers of one digit.
+constexpr std::size_t kTomlMemory = 96;
 
 void rejectGltfOptions(const std::filesystem::path& file, const LoadOptions& options) {
   const auto reject = [&](const std::string& value, const char* key, const char* what) {
@@ -24,8 +28,9 @@ void rejectGltfOptions(const std::filesystem::path& file, const LoadOptions& opt
 
 Scene read(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
   rejectGltfOptions(file, options);
-  const TomlValue document = parseToml(text, file);
   SceneTomlContext context(file, options);
+  context.budget.take(kTomlMemory * text.size());
+  const TomlValue document = parseToml(text, file);
   context.scene.name = file.filename().string();
   context.scene.report.files.push_back(file);
   TomlReader root(document, "the scene", context.file);
@@ -51,7 +56,8 @@ Scene read(std::string_view text, const std::filesystem::path& file, const LoadO
 }  // namespace
 
 Scene loadSceneToml(const std::filesystem::path& file, const LoadOptions& options) {
-  return parseSceneToml(readTextFile(file), file, options);
+  MemoryBudget budget(file, options.maxMemory);
+  return parseSceneToml(readTextFile(file, budget), file, options);
 }
 
 Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "io/image.h"
+#include "io/codec.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/defaults/default_environment.h"
 #include "scene/toml/context.h"
@@ -90,9 +90,8 @@ void readEnvironment(SceneTomlContext& context, const TomlValue& table) {
   if (!source) reader.fail(table, "[environment] needs 'image', 'color', 'default = true' or 'none = true'");
   if (reader.has("image")) {
     const std::filesystem::path file = context.resolvePath(*source, reader.toText(*source, "image"));
-    const io::Image image = context.readImage(file);
-    context.budget.take(image.sampleCount() * sizeof(float));
-    environment.image = io::toFloat(image);
+    environment.image = io::readRadiance(file, context.budget);
+    context.scene.report.files.push_back(file);
     environment.name = file.filename().string();
   } else if (reader.has("color")) {
     environment.constant = toColor(reader, *source, "color", kNotNegative);

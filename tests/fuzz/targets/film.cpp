@@ -35,7 +35,8 @@ std::vector<std::byte> withChecksum(Input input) {
 
 void readInput(Input input) {
   acceptErrors([&] {
-    const job::StoredFilm stored = job::decodeStoredFilm(withChecksum(input), "input.qfilm");
+    MemoryBudget budget("input.qfilm", kMaxMemory);
+    const job::StoredFilm stored = job::decodeStoredFilm(withChecksum(input), "input.qfilm", budget);
     (void)job::samplesText(stored.file.film);
     const std::vector<std::byte> written = render::encodeFilm(stored.file);
     if (render::encodeFilm(render::decodeFilm(written, "written.qfilm")) != written)

@@ -20,7 +20,7 @@ using test::makeGradient;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string errorOf(const Bytes& bytes, const std::string& name = "a.img") {
+std::string imageError(const Bytes& bytes, const std::string& name = "a.img") {
   try {
     decodeImage(bytes, name);
   } catch (const FileError& error) {
@@ -138,7 +138,7 @@ TEST(PngTest, RejectsWrongChecksums) {
     Bytes broken = bytes;
     broken[name + 4 + static_cast<std::size_t>(bytes[name - 1])] ^=
         std::byte{1};  // the chunk has less than 256 bytes of data
-    EXPECT_THAT(errorOf(broken), HasSubstr("checksum")) << chunk;
+    EXPECT_THAT(imageError(broken), HasSubstr("checksum")) << chunk;
   }
 }
 
@@ -168,7 +168,7 @@ TEST(JpegTest, ReadsBaselineProgressiveAndGray) {
 
 TEST(JpegTest, RejectsCmyk) {
   const Image four = makeGradient(16, 16, 4, PixelType::u8);
-  EXPECT_THAT(errorOf(test::encodeJpeg(four, 90, TJSAMP_444, 0)), HasSubstr("a.img: CMYK JPEG is not supported"));
+  EXPECT_THAT(imageError(test::encodeJpeg(four, 90, TJSAMP_444, 0)), HasSubstr("a.img: CMYK JPEG is not supported"));
 }
 
 TEST(JpegTest, AllowsPaddingBetweenSegments) {
@@ -207,23 +207,23 @@ TEST(CodecTest, ProbesWithoutDecoding) {
 }
 
 TEST(CodecTest, RejectsUnknownContent) {
-  EXPECT_EQ(errorOf({}), "a.img: the image is empty");
-  EXPECT_THAT(errorOf(test::bytesOf("GIF89a......")), HasSubstr("a.img: not a supported image"));
+  EXPECT_EQ(imageError({}), "a.img: the image is empty");
+  EXPECT_THAT(imageError(test::bytesOf("GIF89a......")), HasSubstr("a.img: not a supported image"));
   EXPECT_THROW(readImage("/nonexistent/a.png"), FileError);
 }
 
 TEST(CodecTest, RejectsHugeSizesBeforeAllocating) {
-  EXPECT_THAT(errorOf(test::makePng({60000, 60000, 8, 6, 0, {}, "x"})),
+  EXPECT_THAT(imageError(test::makePng({60000, 60000, 8, 6, 0, {}, "x"})),
               HasSubstr("the image is too large: 60000 x 60000"));
-  EXPECT_THAT(errorOf(test::makePng({70000, 1, 8, 0, 0, {}, "x"})), HasSubstr("at most 65536"));
-  EXPECT_THAT(errorOf(test::makePng({16000, 16000, 8, 0, 0, {}, "x"})), HasSubstr("256000000 bytes"));
-  EXPECT_THAT(errorOf(test::makePng({0, 5, 8, 0, 0, {}, "x"})), HasSubstr("PNG"));
-  EXPECT_THAT(errorOf(test::bytesOf("#?RADIANCE\n\n-Y 60000 +X 60000\n")), HasSubstr("too large"));
-  EXPECT_THAT(errorOf(test::bytesOf("#?RADIANCE\n\n-Y 9000 +X 9000\nabcd")), HasSubstr("ends early"));
+  EXPECT_THAT(imageError(test::makePng({70000, 1, 8, 0, 0, {}, "x"})), HasSubstr("at most 65536"));
+  EXPECT_THAT(imageError(test::makePng({16000, 16000, 8, 0, 0, {}, "x"})), HasSubstr("256000000 bytes"));
+  EXPECT_THAT(imageError(test::makePng({0, 5, 8, 0, 0, {}, "x"})), HasSubstr("PNG"));
+  EXPECT_THAT(imageError(test::bytesOf("#?RADIANCE\n\n-Y 60000 +X 60000\n")), HasSubstr("too large"));
+  EXPECT_THAT(imageError(test::bytesOf("#?RADIANCE\n\n-Y 9000 +X 9000\nabcd")), HasSubstr("ends early"));
   Bytes jpeg = test::encodeJpeg(makeGradient(8, 8, 3, PixelType::u8), 90, TJSAMP_444, 0);
   const std::size_t frame = textOf(jpeg).find("\xff\xc0");
   for (const std::size_t i : {5u, 7u}) jpeg[frame + i] = std::byte{0x20};  // 8 + 0x2000 pixels
-  EXPECT_THAT(errorOf(jpeg), HasSubstr("header declares"));
+  EXPECT_THAT(imageError(jpeg), HasSubstr("header declares"));
 }
 
 TEST(WriteImageTest, SelectsTheFormatByExtension) {

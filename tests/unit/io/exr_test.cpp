@@ -23,7 +23,7 @@ using testing::FloatNear;
 using testing::HasSubstr;
 using testing::Pointwise;
 
-std::string errorOf(const test::Bytes& bytes) {
+std::string exrError(const test::Bytes& bytes) {
   try {
     decodeImage(bytes, "a.exr");
   } catch (const FileError& error) {
@@ -125,7 +125,7 @@ TEST(ExrTest, FindsTheImageInLayersAndParts) {
   EXPECT_THAT(part.pixel<float>(1, 2), ElementsAre(2201, 1201, 201));
 
   const ExrImage noImage{1, 1, {{"U", ExrType::half, {1.0f}}, {"V", ExrType::half, {1.0f}}}, {}};
-  EXPECT_THAT(errorOf(encodeExr(noImage)), HasSubstr("U, V"));
+  EXPECT_THAT(exrError(encodeExr(noImage)), HasSubstr("U, V"));
   const ExrImage depth{1, 1, {{"Z", ExrType::f32, {3.0f}}}, {}};
   EXPECT_THAT(decodeImage(encodeExr(depth), "a").samples<float>(), ElementsAre(3.0f));
 }
@@ -139,30 +139,30 @@ TEST(ExrTest, RejectsHostileHeaders) {
     return bytes;
   };
   const std::size_t window = text.find("dataWindow") + 10 + 1 + 5 + 1 + 4;  // name, type, size
-  EXPECT_THAT(errorOf(withInt(window + 8, 0x7fffffff)), HasSubstr("dataWindow is out of range"));
-  EXPECT_THAT(errorOf(withInt(window + 8, 100000)), HasSubstr("too large"));
-  EXPECT_THAT(errorOf(withInt(window + 8, 0xffffffff)), HasSubstr("dataWindow is empty"));
-  EXPECT_THAT(errorOf(withInt(window + 12, 60000)), HasSubstr("a.exr: "));
+  EXPECT_THAT(exrError(withInt(window + 8, 0x7fffffff)), HasSubstr("dataWindow is out of range"));
+  EXPECT_THAT(exrError(withInt(window + 8, 100000)), HasSubstr("too large"));
+  EXPECT_THAT(exrError(withInt(window + 8, 0xffffffff)), HasSubstr("dataWindow is empty"));
+  EXPECT_THAT(exrError(withInt(window + 12, 60000)), HasSubstr("a.exr: "));
   const std::size_t size = text.find("box2i") + 6;
-  EXPECT_THAT(errorOf(withInt(size, 0x7fffffff)), HasSubstr("'dataWindow' is larger than the file"));
-  EXPECT_THAT(errorOf(withInt(4, 0x7fffffff)), HasSubstr("a.exr: "));  // version
+  EXPECT_THAT(exrError(withInt(size, 0x7fffffff)), HasSubstr("'dataWindow' is larger than the file"));
+  EXPECT_THAT(exrError(withInt(4, 0x7fffffff)), HasSubstr("a.exr: "));  // version
 }
 
 // OpenEXR reads values of these types without regard to the stated size, and allocates what they state.
 TEST(ExrTest, RejectsAttributesOfWrongSize) {
   const test::Bytes good = encodeExr(makeGradient(8, 8, 3, PixelType::f32));
   const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
-  EXPECT_EQ(errorOf(good), "no error");
+  EXPECT_EQ(exrError(good), "no error");
   test::Bytes noChannels = good;
   noChannels[text.find("chlist") + 7 + 4] = std::byte{0};  // the list ends at its beginning
-  EXPECT_THAT(errorOf(noChannels), HasSubstr("'channels' has a wrong size"));
+  EXPECT_THAT(exrError(noChannels), HasSubstr("'channels' has a wrong size"));
   // An attribute after the magic number and the version.
   const auto errorWith = [&](const std::string& type, const std::vector<std::uint32_t>& value) {
     std::string attribute = "extra" + std::string(1, '\0') + type + '\0';
     std::vector<std::uint32_t> words{static_cast<std::uint32_t>(4 * value.size())};
     words.insert(words.end(), value.begin(), value.end());
     attribute.append(reinterpret_cast<const char*>(words.data()), 4 * words.size());
-    return errorOf(test::bytesOf(text.substr(0, 8) + attribute + text.substr(8)));
+    return exrError(test::bytesOf(text.substr(0, 8) + attribute + text.substr(8)));
   };
   constexpr const char* kProblem = "'extra' has a wrong size";
   EXPECT_THAT(errorWith("preview", {0x7fffffff, 2}), HasSubstr(kProblem));

@@ -18,7 +18,7 @@ using test::makeGradient;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string errorOf(const std::string& text) {
+std::string hdrError(const std::string& text) {
   try {
     decodeImage(bytesOf(text), "a.hdr");
   } catch (const FileError& error) {
@@ -98,23 +98,23 @@ TEST(HdrTest, ReadsOldRuns) {
 
 TEST(HdrTest, DividesByExposure) {
   EXPECT_THAT(redsOf("#?RADIANCE\nEXPOSURE=2\nEXPOSURE= 4.0\n\n-Y 1 +X 2\n", "\x8\x10"), ElementsAre(1, 2));
-  EXPECT_THAT(errorOf("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 2\n"), HasSubstr("EXPOSURE"));
+  EXPECT_THAT(hdrError("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 2\n"), HasSubstr("EXPOSURE"));
 }
 
 TEST(HdrTest, ReportsProblemsWithTheirOffset) {
   const std::string header = "#?RADIANCE\n\n-Y 1 +X 9\n";
-  EXPECT_THAT(errorOf("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 9\n"),
+  EXPECT_THAT(hdrError("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 9\n"),
               HasSubstr("a.hdr: byte 11: Radiance HDR with FORMAT"));
   for (const char* line : {"-Y 1", "-Y 1 +Y 2", "-Y 1 +X", "-Y one +X 2", "-Y 1 +X 2x", "Y 1 X 2", "-Y -1 +X 2"})
-    EXPECT_THAT(errorOf(std::string("#?RADIANCE\n\n") + line + "\n"), HasSubstr("resolution")) << line;
-  EXPECT_THAT(errorOf("#?RADIANCE\n"), HasSubstr("header ends early"));
-  EXPECT_THAT(errorOf("#?RADIANCE\n\n-Y 0 +X 9\n"), HasSubstr("no pixels"));
-  EXPECT_THAT(errorOf(header), HasSubstr("byte 22: Radiance HDR data ends early"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x8", 4)), HasSubstr("wrong width"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\x8a\1", 6)), HasSubstr("a run exceeds its scan line"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\0\1", 6)), HasSubstr("a run exceeds its scan line"));
-  EXPECT_THAT(errorOf(header + "\1\1\1\1"), HasSubstr("a run exceeds its scan line"));
-  EXPECT_THAT(errorOf(header + "\5\5\5\5\1\1\1\x9"), HasSubstr("a run exceeds its scan line"));
+    EXPECT_THAT(hdrError(std::string("#?RADIANCE\n\n") + line + "\n"), HasSubstr("resolution")) << line;
+  EXPECT_THAT(hdrError("#?RADIANCE\n"), HasSubstr("header ends early"));
+  EXPECT_THAT(hdrError("#?RADIANCE\n\n-Y 0 +X 9\n"), HasSubstr("no pixels"));
+  EXPECT_THAT(hdrError(header), HasSubstr("byte 22: Radiance HDR data ends early"));
+  EXPECT_THAT(hdrError(header + std::string("\2\2\0\x8", 4)), HasSubstr("wrong width"));
+  EXPECT_THAT(hdrError(header + std::string("\2\2\0\x9\x8a\1", 6)), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(hdrError(header + std::string("\2\2\0\x9\0\1", 6)), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(hdrError(header + "\1\1\1\1"), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(hdrError(header + "\5\5\5\5\1\1\1\x9"), HasSubstr("a run exceeds its scan line"));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ Bytes bytesOf(std::initializer_list<int> values) {
 
 io::Image decode(const Ktx2& file) { return io::decodeImage(file.build(), "a.ktx2"); }
 
-std::string errorOf(const Bytes& bytes) {
+std::string ktx2Error(const Bytes& bytes) {
   try {
     io::decodeImage(bytes, "a.ktx2");
   } catch (const FileError& error) {
@@ -93,11 +93,11 @@ TEST(Ktx2, ReadsWiderFormats) {
 
 TEST(Ktx2, RejectsInvalidFiles) {
   const Ktx2 good{.level = bytesOf({1, 2, 3, 4})};
-  EXPECT_EQ(errorOf(good.build()), "");
+  EXPECT_EQ(ktx2Error(good.build()), "");
   const auto with = [&](auto change) {
     Ktx2 file = good;
     change(file);
-    return errorOf(file.build());
+    return ktx2Error(file.build());
   };
   EXPECT_THAT(with([](Ktx2& f) { f.level.pop_back(); }), HasSubstr("byte 96"));
   EXPECT_THAT(with([](Ktx2& f) { f.width = 0; }), HasSubstr("no pixels"));
@@ -121,7 +121,8 @@ TEST(Ktx2, RejectsInvalidFiles) {
   }
   Bytes file = good.build();
   for (std::size_t size = 12; size < file.size(); ++size)
-    EXPECT_THAT(errorOf({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}), HasSubstr("early")) << size;
+    EXPECT_THAT(ktx2Error({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}), HasSubstr("early"))
+        << size;
 }
 
 // ---- Blocks

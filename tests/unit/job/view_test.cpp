@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "scene/defaults/default_environment.h"
+#include "temp_folder.h"
 
 namespace quintet::job {
 namespace {
@@ -139,6 +141,15 @@ TEST(ChooseEnvironment, UsesTheFirstSpecified) {
   EXPECT_FLOAT_EQ(colored.rotation, kPi / 2);
   request.source = "no/such/sky.hdr";
   EXPECT_THROW(chooseEnvironment(scene, request), FileError);
+}
+
+// The header states 192 MiB of pixels, which do not follow.
+TEST(ChooseEnvironment, LimitsTheMemory) {
+  const test::TempFolder folder;
+  writeFile(folder / "sky.hdr", std::string_view("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n"));
+  EnvironmentRequest request;
+  request.source = folder / "sky.hdr";
+  EXPECT_THROW(chooseEnvironment(makeScene(), request, std::size_t{1} << 20), MemoryError);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory_budget.h"
 #include "demo/large_scene.h"
 #include "scene/geometry/repair.h"
 #include "scene/load.h"
@@ -75,12 +76,14 @@ TEST(LargeScenes, ReadsLargeFilesInParts) {
     std::vector<std::byte> data(size);
     for (std::size_t i = 0; i < size; i += 4093) data[i] = static_cast<std::byte>(random());
     writeFile(folder / "data", data);
-    const FileBytes read = readLargeFile(folder / "data");
+    MemoryBudget budget(folder / "data");
+    const FileBytes read = readLargeFile(folder / "data", budget);
     ASSERT_EQ(read.size(), size);
     EXPECT_TRUE(std::equal(read.begin(), read.end(), data.begin()));
   }
-  EXPECT_THROW(readLargeFile(folder / "none"), FileError);
-  EXPECT_THROW(readLargeFile(folder.path()), FileError);
+  MemoryBudget budget(folder.path());
+  EXPECT_THROW(readLargeFile(folder / "none", budget), FileError);
+  EXPECT_THROW(readLargeFile(folder.path(), budget), FileError);
 }
 
 // Invalid values in distant parts of the arrays.

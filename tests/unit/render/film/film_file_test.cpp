@@ -233,6 +233,25 @@ TEST(FilmFile, ChecksHeadersAgainstThePayload) {
   expectSame(decodeFilm(withHeader(bytes, "\"seed\"", "\"seed\""), "x"), sample(9, 5));
 }
 
+// The header states a region of 4 MiB per array, which the compressed blocks could have.
+TEST(FilmFile, LimitsTheMemory) {
+  const FilmFile small = sample(9, 5);
+  const std::vector<std::byte> bytes = encodeFilm(small);
+  MemoryBudget enough("a.qfilm", std::size_t{1} << 20), tooSmall("a.qfilm", 1000),
+      lying("a.qfilm", std::size_t{1} << 20);
+  expectSame(decodeFilm(bytes, "a.qfilm", enough), small);
+  EXPECT_THROW(decodeFilm(bytes, "a.qfilm", tooSmall), MemoryError);
+  const std::vector<std::byte> large =
+      withHeader(withHeader(bytes, "  9,\n", "  1024,\n"), "  5\n", "  " + std::to_string(bytes.size() / 20) + "\n");
+  EXPECT_THROW(decodeFilm(large, "a.qfilm", lying), MemoryError);
+  EXPECT_THROW(decodeFilm(large, "a.qfilm"), FileError);
+
+  const test::TempFolder folder;
+  writeFilm(folder / "a.qfilm", small);
+  expectSame(readFilm(folder / "a.qfilm", std::size_t{1} << 20), small);
+  EXPECT_THROW(readFilm(folder / "a.qfilm", 1000), MemoryError);
+}
+
 // The arrays of a plane follow from its pixel type. Readers rely on that.
 TEST(FilmFile, RejectsPlanesWithWrongArrays) {
   using program::OutputPixel;

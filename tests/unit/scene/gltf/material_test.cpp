@@ -539,6 +539,22 @@ TEST(GltfTexture, ReadsSeparateKtx2FilesOnce) {
   EXPECT_THROW(scene::loadGltf(folder / "scene.glb", options), FileError);
 }
 
+// The same for data URIs. The limit is enough for the file, its JSON, the URI and the pixels, but not for the URI twice.
+TEST(GltfTexture, DecodesDataUrisOfKtx2Once) {
+  const io::test::Ktx2 image{.width = 512, .height = 512, .level = std::vector<std::byte>(1 << 20)};
+  TextureBuilder builder;
+  builder.use();
+  const std::string uri = "data:image/ktx2;base64," + base64(image.build());
+  builder.root["images"][0] = {{"uri", uri}};
+  builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  const TempFolder folder;
+  writeFile(folder / "scene.glb", builder.glb());
+  const std::size_t once = 17 * builder.glb().size() + uri.size() + (1 << 20);
+  const auto load = [&](std::size_t limit) { return scene::loadGltf(folder / "scene.glb", {.maxMemory = limit}); };
+  EXPECT_EQ(load(once + uri.size() / 2).images.at(0).image.width, 512u);
+  EXPECT_THROW(load(once - uri.size() / 2), MemoryError);
+}
+
 TEST(GltfTexture, IgnoresTexturesWithoutASupportedImage) {
   TextureBuilder builder;
   builder.use();

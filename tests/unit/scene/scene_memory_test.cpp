@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limit on the memory that a scene file requests.
-#include "scene/memory_budget.h"
-
+// The limit on the memory that a scene file requests: LoadOptions::maxMemory.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -16,22 +14,8 @@
 namespace quintet::test {
 namespace {
 
-TEST(MemoryBudget, ThrowsAboveItsLimit) {
-  scene::MemoryBudget budget("scene.glb", std::size_t{3} << 30);
-  budget.take(std::size_t{2} << 30);
-  budget.take(std::size_t{1} << 30);
-  try {
-    budget.take(1);
-    FAIL();
-  } catch (const MemoryError& error) {
-    EXPECT_THAT(error.what(), IsErrorAt("scene.glb", "3.0 GiB"));
-    EXPECT_EQ(error.remedy(), Remedy::raiseMemoryLimit);
-  }
-  EXPECT_THROW(scene::MemoryBudget("x", 10).take(~std::size_t{0}), MemoryError);
-}
-
 // A line of JSON that requests more memory than any machine has. The request is counted before anything is read.
-TEST(MemoryBudget, RejectsExcessiveAccessors) {
+TEST(SceneMemory, RejectsExcessiveAccessors) {
   GltfBuilder builder;
   builder.addTriangle();
   const Json primitive = {
@@ -54,7 +38,7 @@ std::string errorWithin(const GltfBuilder& builder, std::size_t bytes) {
 }
 
 // Each of these files states a size that its bytes cannot fill. The size counts before it is allocated.
-TEST(MemoryBudget, CountsStatedSizes) {
+TEST(SceneMemory, CountsStatedSizes) {
   constexpr std::size_t kLimit = std::size_t{1} << 20;
   GltfBuilder plain;
   plain.addTriangle();
@@ -90,7 +74,7 @@ TEST(MemoryBudget, CountsStatedSizes) {
 }
 
 // The header of the image states 192 MiB of pixels, which do not follow.
-TEST(MemoryBudget, CountsImagesOfSceneFiles) {
+TEST(SceneMemory, CountsImagesOfSceneFiles) {
   const TempFolder folder;
   std::ofstream(folder / "a.hdr") << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n";
   for (const char* text :
@@ -103,8 +87,17 @@ TEST(MemoryBudget, CountsImagesOfSceneFiles) {
     }
 }
 
+// Values of two bytes become objects of TOML.
+TEST(SceneMemory, CountsTheTextOfSceneFiles) {
+  const TempFolder folder;
+  std::string text = "[[mesh]]\nname = 'm'\npositions = [";
+  for (int i = 0; i < 10'000; ++i) text += "0,";
+  text += "]\n";
+  EXPECT_THROW(scene::parseSceneToml(text, folder / "s.scene.toml", {.maxMemory = std::size_t{1} << 20}), MemoryError);
+}
+
 // All files of a scene share one limit.
-TEST(MemoryBudget, IsSharedByTheFilesOfAScene) {
+TEST(SceneMemory, IsSharedByTheFilesOfAScene) {
   GltfBuilder builder;
   builder.addTriangle();
   const TempFolder folder;
@@ -116,19 +109,13 @@ TEST(MemoryBudget, IsSharedByTheFilesOfAScene) {
   EXPECT_THROW(scene::parseSceneToml(text, folder / "s.scene.toml", {.maxMemory = enough / 8}), MemoryError);
 }
 
-TEST(MemoryBudget, LimitsTheNumberOfInstances) {
+TEST(SceneMemory, LimitsTheNumberOfInstances) {
   GltfBuilder builder;
   builder.addTriangle();
   const int zeros = builder.add("accessors", {{"componentType", kFloat}, {"count", 1 << 24}, {"type", "VEC3"}});
   builder.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = zeros;
   EXPECT_THAT(errorOf(builder),
               IsErrorAt("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", "16777215 instances"));
-}
-
-TEST(MemoryBudget, ReportsFailedAllocations) {
-  EXPECT_EQ(scene::withMemoryErrors("scene.glb", [] { return 3; }), 3);
-  EXPECT_THROW(scene::withMemoryErrors("scene.glb", []() -> int { throw std::bad_alloc(); }), MemoryError);
-  EXPECT_THROW(scene::withMemoryErrors("scene.glb", []() -> int { throw std::length_error(""); }), MemoryError);
 }
 
 }  // namespace
