@@ -2,9 +2,11 @@
 #include "application.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -30,9 +32,11 @@ constexpr double kFrameSeconds = 1.0 / 60.0;
 constexpr double kIdleSeconds = 0.5;
 constexpr double kResizeSeconds = 0.15;  // the size of the image follows that of the window after this time
 constexpr int kStableFrames = 3;
-constexpr int kMaxLosses = 3;
-constexpr float kMinImageSide = 4.0f;        // pixels; smaller areas keep the last size
-constexpr double kExposureStep = 1.0 / 3.0;  // stops
+constexpr int kMaxLosses = 3;                           // of the device that presents, in sequence
+constexpr double kStableSeconds = 60;                   // after which a loss is not a repetition
+constexpr std::chrono::milliseconds kReopenPause{250};  // a driver can need some time after a reset
+constexpr float kMinImageSide = 4.0f;                   // pixels; smaller areas keep the last size
+constexpr double kExposureStep = 1.0 / 3.0;             // stops
 
 ViewState initialState(const ApplicationOptions& options) {
   ViewState state;
@@ -254,11 +258,11 @@ void Application::draw(const gpu::DrawList& list) {
       };
       presentation_->renderer.draw(commands, target, list, gui_->background(), drawLines);
     });
-  } catch (const DeviceLostError&) {
-    replacePresentation();
+  } catch (const DeviceLostError& error) {
+    replacePresentation(error);
   } catch (const gpu::VulkanError& error) {
     if (error.result() != VK_ERROR_SURFACE_LOST_KHR) throw;
-    replacePresentation();
+    replacePresentation(error);
   }
 }
 
@@ -281,11 +285,24 @@ void Application::prepareLines(gpu::Commands& commands, const gpu::RenderTarget&
   lines->prepare(commands, target.slot, state_.rays.lines);
 }
 
-// After the device or the surface was lost.
-void Application::replacePresentation() {
-  if (++presentationLosses_ > kMaxLosses) throw;
+// After the device or the surface was lost. Throws Error after kMaxLosses attempts.
+void Application::replacePresentation(const Error& cause) {
+  if (clock_.seconds() - presentationLost_ > kStableSeconds) presentationLosses_ = 0;
   presentation_.reset();
-  presentation_ = std::make_unique<Presentation>(window_, options_);
+  std::string failure = cause.what();
+  while (!presentation_) {
+    if (++presentationLosses_ > kMaxLosses)
+      throw Error(fmt::format("the window cannot be drawn: its device was lost {} times in sequence: {}",
+                              kMaxLosses + 1, failure));
+    std::this_thread::sleep_for((presentationLosses_ - 1) * kReopenPause);
+    try {
+      presentation_ = std::make_unique<Presentation>(window_, options_);
+    } catch (const Error& error) {
+      failure = error.what();
+    }
+  }
+  presentationLost_ = clock_.seconds();
+  state_.addMessage({Message::Kind::warning, "the device that draws the window was lost and opened again"});
   gui_->sendFontAgain();
   textured_ = nullptr;
   framesToDraw_ = kStableFrames;

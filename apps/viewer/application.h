@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/stopwatch.h"
 #include "gpu/context.h"
 #include "gpu/draw_list_renderer.h"
@@ -83,7 +84,7 @@ class Application {
   void finishDialog();
   void draw(const gpu::DrawList& list);
   void prepareLines(gpu::Commands& commands, const gpu::RenderTarget& target);
-  void replacePresentation();
+  void replacePresentation(const Error& cause);
   const std::vector<Lesson>& lessonList();
   void emitWidgets();
   void logWidget(const std::string& name, vec2 least, vec2 most);
@@ -101,10 +102,11 @@ class Application {
   std::vector<Lesson> lessons_;
   std::vector<InputEvent> events_;
 
-  float displayScale_ = 1;  // that the display asks for, in screen coordinates
-  int framesToDraw_ = 3;    // after input, until the interface is stable
-  double lastFrame_ = 0;    // on clock_
-  int presentationLosses_ = 0;
+  float displayScale_ = 1;       // that the display asks for, in screen coordinates
+  int framesToDraw_ = 3;         // after input, until the interface is stable
+  double lastFrame_ = 0;         // on clock_
+  int presentationLosses_ = 0;   // in sequence
+  double presentationLost_ = 0;  // on clock_, the last time
   std::uint64_t displayedImage_ = 0, displayedSession_ = 0;
   DisplaySettings displayedSettings_;
   std::shared_ptr<const io::Image> displayedReference_;

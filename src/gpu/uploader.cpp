@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "gpu/commands.h"
+#include "gpu/error.h"
 
 namespace quintet::gpu {
 namespace {
@@ -84,10 +85,11 @@ Uploader::~Uploader() {
     bufferCopies_.clear();
     imageCopies_.clear();
   }
+  // A destructor cannot throw.
   try {
     flush();
+  } catch (const DeviceLostError&) {  // so does every later use of the device, which reports it
   } catch (const std::exception& error) {
-    // A destructor cannot throw. The next use of the device reports the same error.
     if (context_.log()) context_.log()(LogLevel::warning, error.what());
   }
 }

@@ -8,6 +8,10 @@
 namespace quintet::job {
 
 Engine::Engine(EngineOptions options) : options_(std::move(options)), compiler_(makeCompiler(options_.caches)) {
+  open();
+}
+
+void Engine::open() {
   // The default launch policy: if no thread can be started, the device is opened by context().
   opening_ = std::async([this, clock = Stopwatch()] {
     gpu::ContextOptions contextOptions;
@@ -20,8 +24,15 @@ Engine::Engine(EngineOptions options) : options_(std::move(options)), compiler_(
 }
 
 gpu::Context& Engine::context() {
+  if (!context_ && !opening_.valid()) open();
   if (!context_) context_ = opening_.get();
   return *context_;
+}
+
+void Engine::close() {
+  opening_ = {};  // waits
+  pipelineCache_.reset();
+  context_.reset();
 }
 
 gpu::PipelineCache& Engine::pipelineCache() {

@@ -29,8 +29,11 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  // Waits for the device. Throws gpu::NoDeviceError, gpu::VulkanError.
+  // Waits for the device. Throws gpu::NoDeviceError, gpu::VulkanError; a later call then tries to open it again.
   gpu::Context& context();
+  // Closes the device, for example because it was lost; the next context() opens it again. All objects that use it must
+  // have been destroyed.
+  void close();
   const shader::Compiler& compiler() const { return compiler_; }
   gpu::PipelineCache& pipelineCache();
 
@@ -38,6 +41,8 @@ class Engine {
   double startSeconds() const { return startSeconds_; }
 
  private:
+  void open();
+
   const EngineOptions options_;
   shader::Compiler compiler_;
   double startSeconds_ = 0;

@@ -116,6 +116,10 @@ class RenderJob {
   // Applies the edits to the device now. Throws as run() does.
   void update(Observer& observer);
 
+  // Destroys everything on the device, for example because it was lost (Engine::close()), and discards the samples. The
+  // next run(), renderBatch() or update() loads all of it again, with all edits. For editable jobs.
+  void releaseDevice();
+
   // Moves the scene on the device to the frame of the last render, after a PixelExplainer has moved it.
   void showCurrentFrame();
   bool callsPrint() const { return callsPrint_; }  // the program has calls of debugPrintfEXT

@@ -227,13 +227,23 @@ void RenderJob::updateFrame() {
   provenanceOutdated_ = true;
 }
 
-void RenderJob::rebuildScene(Observer& observer) {
+void RenderJob::releaseDevice() {
+  assert(job_.request.editable);
   if (editedScene_) job_.scene.loaded = editedScene_;
   // The image keeps the size that was chosen for the first camera.
   if (scene_) job_.request.size = scene_->size;
   renderer_.reset();
+  prints_.reset();
   scene_.reset();
   plainEnvironment_.reset();
+  start_ = {};
+  started_ = false;
+  nextFrame_ = 0;
+  sceneOutdated_ = true;
+}
+
+void RenderJob::rebuildScene(Observer& observer) {
+  releaseDevice();
   prepare(observer);
   sceneEdited_ = environmentEdited_ = false;  // prepare() has computed the hashes
   frameOutdated_ = true;                      // a new scene shows frame 0

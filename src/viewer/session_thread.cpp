@@ -253,11 +253,19 @@ void SessionThread::guarded(const std::function<void()>& function) {
   } catch (const TimeoutError& error) {
     fail(error.what());
   } catch (const DeviceLostError& error) {
-    fail(fmt::format("{}; open the scene again to continue", error.what()));
-    engine_.reset();  // its device stays lost
+    if (!session_) {
+      fail(error.what());
+      engine_.reset();  // its device stays lost
+      return;
+    }
+    if (!session_->recoverFrom(error)) addMessage(Message::Kind::error, error.what());
   } catch (const gpu::NoDeviceError& error) {
-    fail(error.what());
-    engine_.reset();  // the devices can change
+    if (!session_) {
+      fail(error.what());
+      engine_.reset();  // the devices can change
+      return;
+    }
+    addMessage(Message::Kind::error, error.what());
   } catch (const gpu::VulkanError& error) {
     fail(error.what());
   } catch (const std::exception& error) {  // UsageError, FileError, MemoryError, std::bad_alloc
@@ -415,6 +423,9 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
       addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
     } else if (const auto* lines = std::get_if<interactive::LinesPrinted>(&event)) {
       addPrinted(lines->printed);
+    } else if (const auto* replaced = std::get_if<interactive::DeviceReplaced>(&event)) {
+      next_.device = replaced->device;
+      addMessage(Message::Kind::warning, fmt::format("the device was lost; rendering again on {}", replaced->device));
     } else if (const auto* note = std::get_if<interactive::Note>(&event)) {
       addMessage(Message::Kind::note, note->text);
     } else if (const auto* warning = std::get_if<interactive::Warning>(&event)) {
@@ -455,7 +466,16 @@ void SessionThread::measureRays() {
 void SessionThread::writeSaves() {
   if (!session_->hasFullSize() && next_.renderError.empty()) return;
   for (const SaveRequest& save : std::exchange(saves_, {}))
-    if (session_) guarded([&] { writeSave(save); });
+    if (session_)
+      guarded([&] {
+        try {
+          writeSave(save);
+        } catch (const DeviceLostError&) {
+          addMessage(Message::Kind::error,
+                     fmt::format("{}: not saved, because the device was lost", save.file.string()));
+          throw;
+        }
+      });
 }
 
 void SessionThread::writeSave(const SaveRequest& save) {

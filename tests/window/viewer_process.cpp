@@ -25,7 +25,8 @@ constexpr std::chrono::milliseconds kPause{20};
 }  // namespace
 
 ViewerProcess::ViewerProcess(const XServer& server, const std::filesystem::path& folder,
-                             const std::vector<std::string>& arguments)
+                             const std::vector<std::string>& arguments,
+                             const std::vector<std::pair<std::string, std::string>>& environment)
     : events_(folder / "events.jsonl"), errors_(folder / "errors.txt") {
   std::filesystem::remove(events_);
   std::vector<std::string> all{QUINTET_VIEW_BINARY, "--events", events_.string()};
@@ -39,6 +40,7 @@ ViewerProcess::ViewerProcess(const XServer& server, const std::filesystem::path&
     if (!QUINTET_SANITIZED) ::setenv("QUINTET_VALIDATE", "1", 1);
     ::setenv("LP_NUM_THREADS", "4", 1);
     ::unsetenv("WAYLAND_DISPLAY");
+    for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
     const int errors = ::open(errors_.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
     ::dup2(errors, STDERR_FILENO);
     if (::chdir(folder.c_str()) != 0) ::_exit(127);

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +26,9 @@ using Json = nlohmann::json;
 class ViewerProcess {
  public:
   // Starts in `folder`, where the settings are stored too, with validation unless the build has sanitizers.
-  ViewerProcess(const XServer& server, const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+  // `environment`: additional variables.
+  ViewerProcess(const XServer& server, const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                const std::vector<std::pair<std::string, std::string>>& environment = {});
   ~ViewerProcess();  // kills the process if it still runs
   ViewerProcess(const ViewerProcess&) = delete;
   ViewerProcess& operator=(const ViewerProcess&) = delete;

@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
+#include "device_loss.h"
 #include "io/codec.h"
 #include "io/image.h"
 #include "temp_folder.h"
@@ -76,8 +77,12 @@ class WindowTest : public testing::Test {
 
   ViewerProcess& start(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"--window-size", windowSize_});
-    viewer_ = std::make_unique<ViewerProcess>(server_, folder_.path(), arguments);
+    viewer_ = std::make_unique<ViewerProcess>(server_, folder_.path(), arguments, environment_);
     return *viewer_;
+  }
+  // The window loses this number of devices once the file "lose" exists.
+  void loseDevices(DeviceLoss::Kind kind, unsigned count) {
+    environment_ = environmentOf({.kind = kind, .trigger = folder_ / "lose", .count = count});
   }
   // Only these panels are open, so that their controls are visible.
   void openPanels(const std::string& names) {
@@ -177,6 +182,7 @@ class WindowTest : public testing::Test {
   TempFolder folder_;
   XServer server_;
   std::unique_ptr<ViewerProcess> viewer_;
+  std::vector<std::pair<std::string, std::string>> environment_;  // of the process, additionally
   std::string windowSize_ = "720x480";
   int shots_ = 0;
 };
@@ -675,6 +681,65 @@ TEST_F(WindowTest, KeepsBookmarksAndSettings) {
   const std::string settings = readTextFile(folder_ / "config/quintet/viewer.json");
   EXPECT_THAT(settings, HasSubstr("\"theme\": \"light\""));
   EXPECT_THAT(settings, HasSubstr("wall.scene.toml")) << "a recent file";
+}
+
+TEST_F(WindowTest, RendersAgainAfterTheLossOfItsDevice) {
+  loseDevices(DeviceLoss::Kind::rendering, 2);
+  openPanels(R"("Parameters")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  expectColor(kRed, "the default");
+  viewer.clickControl("Parameters/swapped");
+  viewer.waitForImage();
+  writeFile(folder_ / "lose", "");
+  viewer.window().key("Home");
+  for (int i = 0; i < 2; ++i) viewer.waitFor("deviceReplaced");
+  viewer.waitForImage();
+  expectColor(kBlue, "the edit stays");
+  viewer.window().key("z", {"Control_L"});  // the camera
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  expectColor(kRed, "so do the steps of undo");
+}
+
+TEST_F(WindowTest, WaitsForAChangeIfTheDeviceIsLostRepeatedly) {
+  loseDevices(DeviceLoss::Kind::rendering, 3);
+  ViewerProcess& viewer = startScene("normals");
+  const io::Image before = viewer.window().screenshot();
+  writeFile(folder_ / "lose", "");
+  viewer.window().key("Home");
+  const Json error = viewer.waitFor("error");
+  EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("the device was lost 3 times in sequence"));
+  viewer.settle();
+  EXPECT_EQ(differentPixels(before, viewer.window().screenshot()), 0) << "the last image stays";
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  viewer.settle();
+  EXPECT_EQ(differentPixels(before, viewer.window().screenshot()), 0) << "the same view again";
+}
+
+TEST_F(WindowTest, OpensTheDeviceThatDrawsItAgain) {
+  loseDevices(DeviceLoss::Kind::presenting, 2);
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  writeFile(folder_ / "lose", "");
+  viewer.window().key("minus");
+  viewer.settle();
+  expectColor({230, 0, 0}, "with less exposure");
+  EXPECT_TRUE(viewer.hasControl("the device that draws the window was lost and opened again"));
+}
+
+TEST_F(WindowTest, EndsIfNoDeviceCanDrawIt) {
+  loseDevices(DeviceLoss::Kind::presenting, 100);
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  viewer.window().key("l");
+  viewer.settle();
+  writeFile(folder_ / "lose", "");
+  viewer.window().key("minus");
+  const ViewerProcess::End end = viewer.finish();
+  viewer_.reset();
+  EXPECT_EQ(end.status, 1);
+  EXPECT_THAT(end.errors,
+              testing::MatchesRegex("quintet: the window cannot be drawn: [^\n]*VK_ERROR_DEVICE_LOST[^\n]*\n"));
+  EXPECT_THAT(readTextFile(folder_ / "config/quintet/viewer.json"), HasSubstr("\"theme\": \"light\""));
 }
 
 TEST_F(WindowTest, ShowsFailuresOfLoading) {

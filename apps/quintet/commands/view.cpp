@@ -174,8 +174,11 @@ int runScript(const ViewOptions& options, std::istream& lines, const std::string
     } catch (const ProgramError& error) {
       printLine(job::interactive::eventJson(job::interactive::DiagnosticsFound{error.diagnostics()}));
       fail(error);
-    } catch (const DeviceLostError&) {
+    } catch (const TimeoutError&) {
       throw;  // no later line can succeed
+    } catch (const DeviceLostError& error) {
+      session.recoverFrom(error);
+      fail(error);
     } catch (const Error& error) {
       fail(error);
     }

@@ -35,6 +35,12 @@ struct DiagnosticsFound {
 struct LinesPrinted {
   Printed printed;
 };
+// The device was lost, and another one or the same was opened. The session continues with all edits and settings; the
+// samples are discarded.
+struct DeviceReplaced {
+  std::string device;   // name
+  std::string message;  // why the device was lost
+};
 struct Note {
   std::string text;
 };
@@ -46,8 +52,8 @@ struct Failed {
   std::string message;
 };
 
-using Event =
-    std::variant<Restarted, ImageUpdated, ProgramReloaded, DiagnosticsFound, LinesPrinted, Note, Warning, Failed>;
+using Event = std::variant<Restarted, ImageUpdated, ProgramReloaded, DiagnosticsFound, LinesPrinted, DeviceReplaced,
+                           Note, Warning, Failed>;
 
 }  // namespace quintet::job::interactive
 #endif

@@ -30,6 +30,9 @@ struct ToJson {
     for (const PrintedLine& line : e.printed.lines) lines.push_back(printedLineJson(line));
     return {{"event", "printed"}, {"lines", std::move(lines)}, {"omitted", e.printed.omitted}};
   }
+  Json operator()(const DeviceReplaced& e) const {
+    return {{"event", "deviceReplaced"}, {"device", e.device}, {"message", e.message}};
+  }
   Json operator()(const Note& e) const { return {{"event", "note"}, {"message", e.text}}; }
   Json operator()(const Warning& e) const { return {{"event", "warning"}, {"message", e.text}}; }
   Json operator()(const Failed& e) const { return {{"event", "error"}, {"message", e.message}}; }

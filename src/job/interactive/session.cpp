@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,6 +29,9 @@ namespace {
 
 constexpr std::uint32_t kDefaultSamples = 64;
 constexpr double kQuietSeconds = 0.2;  // after the last command, the image becomes sharper
+constexpr double kStableSeconds = 60;  // of rendering, after which a loss of the device is not a repetition
+// A driver can need some time after a reset. The first attempt to open the device does not wait.
+constexpr std::chrono::milliseconds kReopenPause{250};
 
 // By the kind of device.
 struct Pace {
@@ -165,10 +169,11 @@ Session::Session(Engine& engine, SessionRequest request, Clock clock, Observer& 
   materialNames_ = scene::materialNames(*scene_);
   lightNames_ = scene::lightNames(*scene_);
   sceneBounds_ = scene::animatedBounds(*scene_);
-  job_ = std::make_unique<RenderJob>(engine,
-                                     resolveSession(request, scene_, sceneBounds_, std::move(source),
-                                                    std::move(program), paceOf(engine).launchSeconds),
-                                     *recorder_);
+  recovering([&] {
+    job_ = std::make_unique<RenderJob>(
+        engine, resolveSession(request, scene_, sceneBounds_, source, program, paceOf(engine).launchSeconds),
+        *recorder_);
+  });
   const RenderRequest& resolved = job_->resolved().request;
   state_.program = request.program;
   state_.parameterFile = resolved.parameterFile;
@@ -196,7 +201,7 @@ void Session::apply(const Command& command) {
     return;
   }
   if (const auto* print = std::get_if<SetPrint>(&command)) {
-    setPrint(*print);
+    recovering([&] { setPrint(*print); });
     return;
   }
   const bool isUndo = std::holds_alternative<Undo>(command), isRedo = std::holds_alternative<Redo>(command);
@@ -211,7 +216,7 @@ void Session::apply(const Command& command) {
     if (isRedo) history_.dropRedo();
   };
   try {
-    show(next);
+    recovering([&] { show(next); });
   } catch (const FileError&) {  // such as a program whose file no longer exists
     drop();
     throw;
@@ -533,11 +538,62 @@ void Session::restarted() {
   explainer_.reset();
   ++restarts_;
   recorder_->add(Restarted{});
+  if (failed_) deviceLosses_ = 0;
   samples_ = 0;
   seconds_ = 0;
   kept_.reset();
   preview_ = refining_ = failed_ = false;
   lastRestart_ = clock_();
+}
+
+// Calls the function, again with a new device if the device was lost.
+template <class Function>
+std::invoke_result_t<const Function&> Session::recovering(const Function& function) {
+  for (;;) {
+    try {
+      return function();
+    } catch (const TimeoutError&) {  // the device still works
+      throw;
+    } catch (const DeviceLostError& error) {
+      replaceDevice(error.what());
+    }
+  }
+}
+
+// Edits of the job take effect when the next render has loaded it on the new device.
+void Session::replaceDevice(const std::string& cause) {
+  explainer_.reset();
+  if (picking_.valid()) picking_.wait();
+  picking_ = {};
+  if (job_) {
+    job_->releaseDevice();
+    restarted();
+  }
+  engine_.close();
+  std::string failure;
+  while (++deviceLosses_ < kMaxDeviceLosses) {
+    std::this_thread::sleep_for((deviceLosses_ - 1) * kReopenPause);
+    try {
+      recorder_->add(DeviceReplaced{engine_.context().info().name, cause});
+      return;
+    } catch (const Error& error) {  // the driver needs more time, or the device no longer exists
+      failure = error.what();
+    }
+  }
+  const char* remedy = job_ ? "; the next change of the image tries again" : "";
+  if (!failure.empty())
+    throw DeviceLostError(fmt::format("the device was lost and cannot be opened{}: {}", remedy, failure));
+  throw DeviceLostError(fmt::format("the device was lost {} times in sequence{}: {}", kMaxDeviceLosses, remedy, cause));
+}
+
+bool Session::recoverFrom(const DeviceLostError& error) {
+  if (deviceLosses_ >= kMaxDeviceLosses) return false;
+  try {
+    replaceDevice(error.what());
+    return true;
+  } catch (const DeviceLostError&) {
+    return false;
+  }
 }
 
 bool Session::hasAutomaticCamera() const {
@@ -560,7 +616,7 @@ void Session::reloadIfSaved() {
     watchFiles(diagnostics);
   };
   try {
-    showProgram(loadForSession(state_.program), state_);
+    recovering([&] { showProgram(loadForSession(state_.program), state_); });
     recorder_->add(ProgramReloaded{watcher_.changedNames()});
     watched_.addFiles(job_->programFiles());
     watchFiles({});
@@ -590,7 +646,8 @@ double Session::secondsUntilWork() const {
 
 std::vector<Event> Session::refine(const std::function<bool()>& interrupted) {
   direct_ = true;
-  failed_ = false;  // the caller requires an image, so it gets that or the error again
+  if (std::exchange(failed_, false))
+    deviceLosses_ = 0;  // the caller requires an image, so it gets that or the error again
   try {
     std::vector<Event> events = step(std::numeric_limits<double>::infinity(), interrupted);
     direct_ = false;
@@ -612,7 +669,13 @@ std::vector<Event> Session::step(double seconds, const std::function<bool()>& in
   // A batch can take seconds, and a changed exposure must not wait for it.
   const bool displayChanged = imageChanged_ && (samples_ > 0 || kept_);
   try {
-    if (!displayChanged || direct_) work(end);
+    if (!displayChanged || direct_) recovering([&] { work(end); });
+  } catch (const TimeoutError&) {
+    throw;
+  } catch (const DeviceLostError& error) {
+    fail(error);
+  } catch (const gpu::NoDeviceError& error) {  // after a loss
+    fail(error);
   } catch (const ProgramError& error) {
     recorder_->diagnostics(error.diagnostics());
     watchFiles(error.diagnostics());
@@ -700,6 +763,7 @@ bool Session::added(std::optional<double> seconds, std::uint64_t samples, unsign
   seconds_ += *seconds;
   imageChanged_ = true;
   kept_.reset();
+  if (refining_ && (samples_ >= state_.samples || seconds_ >= kStableSeconds)) deviceLosses_ = 0;
   // The first click then need not wait for the compiler.
   if (!picking_.valid()) picking_ = compilePicking(engine_, *job_->scene()->onDevice, program());
   if (measuredLink_ == job_->linkCount()) resolution_.measured(factor, *seconds / static_cast<double>(samples));
@@ -737,31 +801,37 @@ PixelExplanation Session::explain(uvec2 pixel, std::uint32_t sample) {
     throw UsageError(fmt::format("{} {} does not exist: the first one is 0, the last one {}",
                                  job_->resolved().accumulatesFrames() ? "frame" : "sample", sample,
                                  state_.samples - 1));
-  job_->update(*recorder_);
-  if (!explainer_ || explainedPixel_ != pixel) {
-    explainer_.reset();
-    const float aspect = static_cast<float>(state_.size.x) / static_cast<float>(state_.size.y);
-    explainer_ = std::make_unique<PixelExplainer>(
-        engine_, *job_,
-        ExplainedImage{chooseCamera(job_->hostScene(), state_.camera, aspect, sceneBounds_), state_.size}, pixel);
-    explainedPixel_ = pixel;
-  }
-  PixelExplanation explanation = explainer_->explain(pixel, sample, *recorder_);
-  job_->showCurrentFrame();
-  return explanation;
+  return recovering([&] {
+    job_->update(*recorder_);
+    if (!explainer_ || explainedPixel_ != pixel) {
+      explainer_.reset();
+      const float aspect = static_cast<float>(state_.size.x) / static_cast<float>(state_.size.y);
+      explainer_ = std::make_unique<PixelExplainer>(
+          engine_, *job_,
+          ExplainedImage{chooseCamera(job_->hostScene(), state_.camera, aspect, sceneBounds_), state_.size}, pixel);
+      explainedPixel_ = pixel;
+    }
+    PixelExplanation explanation = explainer_->explain(pixel, sample, *recorder_);
+    job_->showCurrentFrame();
+    return explanation;
+  });
 }
 
 std::optional<Pick> Session::pick(uvec2 pixel) {
   requirePixel(pixel);
-  job_->update(*recorder_);
-  job_->showCurrentFrame();
-  return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
+  return recovering([&] {
+    job_->update(*recorder_);
+    job_->showCurrentFrame();
+    return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
+  });
 }
 
 DepthMap Session::depthMap() {
-  job_->update(*recorder_);
-  job_->showCurrentFrame();
-  return renderDepthMap(engine_, *job_->scene()->onDevice, camera(), state_.size, program());
+  return recovering([&] {
+    job_->update(*recorder_);
+    job_->showCurrentFrame();
+    return renderDepthMap(engine_, *job_->scene()->onDevice, camera(), state_.size, program());
+  });
 }
 
 }  // namespace quintet::job::interactive

@@ -3,6 +3,9 @@
 // report what happened. While commands arrive, images have a reduced resolution that holds a target rate. Afterwards
 // the image becomes sharper in steps, and the film then becomes that of a render with the same request, byte by byte.
 //
+// If the device is lost, the session opens it again and continues with the scene, the edits and the settings. It gives
+// up after kMaxDeviceLosses losses without progress, until a command changes the image.
+//
 // A session is used by one thread at a time. A front end that must not wait runs it in a thread of its own, and
 // interrupts step() when it has a command.
 #ifndef QUINTET_JOB_INTERACTIVE_SESSION_H
@@ -17,8 +20,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "gpu/error.h"
 #include "io/image.h"
 #include "job/depth_map.h"
 #include "job/engine.h"
@@ -33,6 +38,10 @@
 #include "job/source_watcher.h"
 
 namespace quintet::job::interactive {
+
+// Losses of the device after which step() reports Failed. An image with all samples, or a minute of rendering, starts the
+// count over.
+constexpr unsigned kMaxDeviceLosses = 3;
 
 struct LightState {
   scene::Light light;
@@ -81,7 +90,9 @@ class Session {
   using Clock = std::function<double()>;
 
   // Loads scene and program. `engine` and `host` outlive the session; `host` gets the stages of the work and a hung
-  // device, everything else becomes events. Throws as RenderJob and program::loadProgram() do.
+  // device, everything else becomes events. Throws as RenderJob and program::loadProgram() do; DeviceLostError if the
+  // device was lost kMaxDeviceLosses times. Nothing else may use the engine's device between two calls of the session:
+  // each of them can replace it.
   Session(Engine& engine, SessionRequest request, Clock clock, Observer& host);
   ~Session();
 
@@ -97,7 +108,8 @@ class Session {
   // Returns at once if a command has only changed how the image is displayed.
   // Reloads the program if one of its files was saved. `interrupted` is asked between launches, which take about
   // RenderRequest::launchSeconds: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
-  // TimeoutError.
+  // TimeoutError. A lost device becomes DeviceReplaced, or Failed after kMaxDeviceLosses losses; the functions below
+  // throw DeviceLostError then.
   std::vector<Event> step(double seconds, const std::function<bool()>& interrupted = {});
   // Refines to all samples, without images of reduced resolution. After Failed, it tries again.
   std::vector<Event> refine(const std::function<bool()>& interrupted = {});
@@ -107,7 +119,7 @@ class Session {
 
   // The image of the latest ImageUpdated, with the current output, exposure and tone map. Valid until the next command
   // that discards samples. For display: the last bits can differ from result(). They throw Error if the last change
-  // failed.
+  // failed, and DeviceLostError; see recoverFrom().
   io::Image image() const;        // 8-bit sRGB, RGB; RGBA if RenderRequest::transparent
   io::Image linearImage() const;  // float RGBA, linear, premultiplied; without exposure
   // With the film, for output::writeOutputs(). Its size is reduced until refinement starts. Throws Error if the last
@@ -115,6 +127,9 @@ class Session {
   RenderResult result() const;
   bool hasFullSize() const { return samples_ > 0 && filmSize_ == state_.size; }  // result() has samples at that size
   render::RayCount rays() const;  // since the last restart; waits for the device, so not for each image
+  // Call it with an error that one of the functions above, or a use of their result, has thrown: the next step() renders
+  // the image again on a new device. Returns false if the session gave up after kMaxDeviceLosses losses.
+  bool recoverFrom(const DeviceLostError& error);
 
   // What is visible at a pixel of the image at full resolution; nothing if no surface is. For programs that use the
   // camera of the scene. Throws UsageError for a pixel outside, and as step() does.
@@ -167,6 +182,9 @@ class Session {
   void setPrint(const SetPrint& command);
   void requirePixel(uvec2 pixel) const;
   void restarted();
+  template <class Function>
+  std::invoke_result_t<const Function&> recovering(const Function& function);
+  void replaceDevice(const std::string& cause);
   bool hasAutomaticCamera() const;
   const scene::Pose& pose() const;  // at the frame of the state
   std::size_t outputIndex() const;  // in the program
@@ -213,6 +231,7 @@ class Session {
   bool imageChanged_ = false;       // since the last event
   std::uint64_t measuredLink_ = 0;  // RenderJob::linkCount() of the last image; its time can include compilation
   bool failed_ = false;             // as of Failed
+  unsigned deviceLosses_ = 0;       // without progress in between
 };
 
 }  // namespace quintet::job::interactive

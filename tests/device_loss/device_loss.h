@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The environment of a process that loses devices: it loads the layer of layer.cpp.
+#ifndef QUINTET_TESTS_DEVICE_LOSS_DEVICE_LOSS_H
+#define QUINTET_TESTS_DEVICE_LOSS_DEVICE_LOSS_H
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace quintet::test {
+
+struct DeviceLoss {
+  enum class Kind {
+    rendering,   // the device with ray tracing pipelines
+    presenting,  // the device with a swapchain
+  };
+  Kind kind = Kind::rendering;
+  std::filesystem::path trigger;  // the device is lost at the first submission after this file exists; absolute
+  unsigned count = 1;             // of devices that are lost, one after the other
+};
+
+// Variables of the environment, by name.
+inline std::vector<std::pair<std::string, std::string>> environmentOf(const DeviceLoss& loss) {
+  return {{"VK_ADD_LAYER_PATH", QUINTET_DEVICE_LOSS_FOLDER},
+          {"VK_INSTANCE_LAYERS", "VK_LAYER_QUINTET_device_loss"},
+          {"QUINTET_LOSE_DEVICE", loss.kind == DeviceLoss::Kind::rendering ? "rendering" : "presenting"},
+          {"QUINTET_LOSE_WHEN", loss.trigger.string()},
+          {"QUINTET_LOSE_COUNT", std::to_string(loss.count)}};
+}
+
+}  // namespace quintet::test
+#endif
