@@ -33,6 +33,7 @@ struct Selection {
   enum class Kind { none, instance, material, light };
   Kind kind = Kind::none;
   std::size_t index = 0;
+  bool operator==(const Selection&) const = default;
 };
 
 // A message above the image, which disappears.

@@ -25,7 +25,7 @@ struct Settings {
   float scale = 0.0f;           // size of text and controls, [0.5, kMaxScale]; 0 means that of the display
   uvec2 windowSize{1280, 800};  // screen coordinates, which are pixels unless the window system scales the window
   bool panels = true;           // the panels beside the image are visible
-  float panelWidth = 320.0f;    // pixels at scale 1, [200, 1000]
+  float panelWidth = 352.0f;    // pixels at scale 1, [200, 1000]
   std::set<std::string> openPanels{"Scene", "Selection", "Display", "Parameters"};
   std::vector<std::string> recentFiles;  // absolute paths of scenes and programs, the latest first
   bool operator==(const Settings&) const = default;

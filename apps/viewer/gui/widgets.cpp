@@ -61,28 +61,25 @@ void logWidget(const char* label) {
   if (!state().log) return;
   const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
   const char* end = std::strstr(label, "##");
-  const std::string name = end ? std::string(label, end) : label;
+  const std::string name = end == label ? label + 2 : end ? std::string(label, end) : label;
   state().log(state().section.empty() ? name : state().section + "/" + name, {least.x, least.y}, {most.x, most.y});
 }
 
-// Label in the left part of the row; the control gets the rest.
+// Label in the left part of the row; the control gets the rest. Labels that start with "##" are not shown.
 void beginRow(const char* label, std::string_view help) {
+  if (std::strncmp(label, "##", 2) == 0) return ImGui::SetNextItemWidth(-1.0f);
   const float width = ImGui::GetContentRegionAvail().x;
   const float start = ImGui::GetCursorPosX();
   const char* end = std::strstr(label, "##");
   ImGui::AlignTextToFramePadding();
-  const float labelWidth = 0.4f * width - ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::PushClipRect(at, {at.x + labelWidth, at.y + ImGui::GetFrameHeight()}, true);
-  ImGui::TextUnformatted(label, end);
-  ImGui::PopClipRect();
-  if (ImGui::IsItemHovered()) {
-    if (!help.empty())
-      tooltip(help);
-    else if (ImGui::GetItemRectSize().x > labelWidth)
-      tooltip(label);
-  }
-  ImGui::SameLine(start + 0.4f * width);
+  const std::string_view text(label, end ? static_cast<std::size_t>(end - label) : std::strlen(label));
+  const std::string shown = fittingText(text, kLabelShare * width - ImGui::GetStyle().ItemSpacing.x);
+  ImGui::TextUnformatted(shown.c_str());
+  if (!help.empty())
+    tooltip(help);
+  else if (shown != text)
+    tooltip(text);
+  ImGui::SameLine(start + kLabelShare * width);
   ImGui::SetNextItemWidth(-1.0f);
 }
 
@@ -108,7 +105,7 @@ std::string formatOf(const NumberRange& range) {
 }
 
 bool editNumbers(const char* label, double* values, int count, const NumberRange& range) {
-  const std::string format = formatOf(range);
+  const std::string format = formatOf(count == 1 ? range : NumberRange{.whole = range.whole});  // several are narrow
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (range.logarithmic ? int{ImGuiSliderFlags_Logarithmic} : 0);
   bool changed = false;
@@ -221,9 +218,9 @@ bool textField(const char* label, std::string& value, std::string_view help) {
   return endRow(label, id, help, changed);
 }
 
-bool button(const char* label, std::string_view help, bool enabled) {
+bool button(const char* label, std::string_view help, bool enabled, float width) {
   ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(label, {width, 0.0f});
   ImGui::EndDisabled();
   if (!help.empty()) tooltip(help);
   logWidget(label);
@@ -234,9 +231,30 @@ void textRow(const char* label, const std::string& value) {
   const float width = ImGui::GetContentRegionAvail().x;
   const float start = ImGui::GetCursorPosX();
   ImGui::TextDisabled("%s", label);
-  ImGui::SameLine(start + 0.4f * width);
-  ImGui::TextUnformatted(value.c_str());
-  if (ImGui::GetItemRectSize().x > 0.6f * width) tooltip(value);
+  ImGui::SameLine(start + kLabelShare * width);
+  const std::string shown = fittingText(value, ImGui::GetContentRegionAvail().x);
+  ImGui::TextUnformatted(shown.c_str());
+  if (shown != value) tooltip(value);
+}
+
+bool listRow(const char* label, bool selected) {
+  ImVec4 color = ImGui::GetStyleColorVec4(ImGuiCol_CheckMark);
+  color.w = 0.4f;
+  ImGui::PushStyleColor(ImGuiCol_Header, color);
+  const bool clicked = ImGui::Selectable(label, selected);
+  ImGui::PopStyleColor();
+  return clicked;
+}
+
+std::string fittingText(std::string_view text, float width) {
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (ImGui::CalcTextSize(begin, end).x <= width) return std::string(text);
+  constexpr const char* kDots = "...";
+  const char* fits = begin;
+  ImGui::GetFont()->CalcTextSizeA(ImGui::GetFontSize(), std::max(width - ImGui::CalcTextSize(kDots).x, 0.0f), 0.0f,
+                                  begin, end, &fits);
+  return std::string(begin, fits) + kDots;
 }
 
 void tooltip(std::string_view text) {

@@ -19,10 +19,13 @@ struct NumberRange {
   double least = -1e30, most = 1e30;  // a slider if both are moderate, else a field that is dragged
   bool logarithmic = false;
   bool whole = false;
-  std::string_view unit = {};
+  std::string_view unit = {};  // shown after a single number
 };
 
-// Labels stand to the left of the controls. `help` is a tooltip; empty means none.
+// Width of the labels, as a part of the row.
+constexpr float kLabelShare = 0.44f;
+
+// Labels stand to the left of the controls, unless they start with "##". `help` is a tooltip; empty means none.
 bool numberField(const char* label, double& value, const NumberRange& range, std::string_view help = {});
 bool vectorField(const char* label, double* values, int count, const NumberRange& range, std::string_view help = {});
 bool colorField(const char* label, vec3& linear, std::string_view help = {});  // linear Rec. 709, ≥ 0
@@ -31,9 +34,14 @@ bool checkBox(const char* label, bool& value, std::string_view help = {});
 bool choiceField(const char* label, std::size_t& index, const std::vector<std::string>& names,
                  std::string_view help = {});
 bool textField(const char* label, std::string& value, std::string_view help = {});  // true when the edit ends
-bool button(const char* label, std::string_view help = {}, bool enabled = true);
+// `width`: pixels; 0 means that of the label.
+bool button(const char* label, std::string_view help = {}, bool enabled = true, float width = 0);
 void textRow(const char* label, const std::string& value);  // a value that cannot be edited
-void tooltip(std::string_view text);                        // of the last control
+// A row of a list; `selected` rows have the color of selected controls. Returns true if it was clicked.
+bool listRow(const char* label, bool selected);
+// The text, or as much of its start as fits with "..." after it. `width`: pixels of the screen.
+std::string fittingText(std::string_view text, float width);
+void tooltip(std::string_view text);  // of the last control
 // A header that opens and closes. The state is the caller's.
 bool section(const char* label, bool& open);
 void endSections();  // the following controls belong to none

@@ -68,10 +68,13 @@ void statusBar(const ViewState& state, const Area& area) {
     const double share = snapshot.progress.factor > 1 || snapshot.state.samples == 0
                              ? 0.0
                              : static_cast<double>(snapshot.progress.samples) / snapshot.state.samples;
-    ImGui::GetWindowDrawList()->AddRectFilled(
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRectFullScreen();
+    list.AddRectFilled(
         {area.origin.x, area.origin.y},
         {area.origin.x + static_cast<float>(std::min(share, 1.0)) * area.size.x, area.origin.y + 2.0f * state.scale},
         ImGui::GetColorU32(ImGuiCol_CheckMark));
+    list.PopClipRect();
     if (!snapshot.renderError.empty())
       ImGui::TextColored(palette(state.settings.theme).error, "%s", snapshot.renderError.c_str());
     else
@@ -90,14 +93,18 @@ void animationBar(ViewState& state, const Area& area) {
   if (area.size.x < 2.0f || area.size.y < 2.0f) return;
   beginBar("animation", area);
   ImGui::SetCursorPosY(0.5f * (area.size.y - ImGui::GetFrameHeight()));
-  if (button(state.playing ? "Pause" : "Play", "Space")) {
+  const float width = ImGui::CalcTextSize("Pause").x + 2.0f * ImGui::GetStyle().FramePadding.x;
+  if (button(state.playing ? "Pause" : "Play", "Space", true, width)) {
     state.playing = !state.playing;
     state.playStart = state.time - state.snapshot->state.frame / state.snapshot->request->render.framesPerSecond;
   }
   ImGui::SameLine();
   double frame = state.snapshot->state.frame;
   const double last = std::max(1.0f, state.snapshot->scene->lastFrame);
-  if (numberField("Frame", frame, {.least = 0.0, .most = last})) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", "Frame");
+  ImGui::SameLine();
+  if (numberField("##Frame", frame, {.least = 0.0, .most = last})) {
     state.playing = false;
     state.apply(job::interactive::SetFrame{static_cast<float>(frame)});
   }

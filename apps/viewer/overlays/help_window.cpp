@@ -7,6 +7,7 @@
 
 #include "overlays/overlays.h"
 #include "viewer/bindings.h"
+#include "viewer/labels.h"
 
 namespace quintet::viewer {
 namespace {
@@ -41,11 +42,12 @@ void helpWindow(ViewState& state) {
     const BindingSet& set = bindingSet(state.settings.bindings);
     for (const BindingSet& choice : bindingSets()) {
       if (ImGui::RadioButton(std::string(choice.name).c_str(), &choice == &set)) state.settings.bindings = choice.name;
-      ImGui::SameLine();
+      ImGui::SameLine(0.0f, 20.0f * state.scale);
     }
     ImGui::NewLine();
+    ImGui::Spacing();
     if (beginTable("mouse", state.scale)) {
-      for (const DragBinding& binding : set.drags) row(dragText(binding), description(binding.drag));
+      for (const DragBinding& binding : set.drags) row(capitalized(dragText(binding)), description(binding.drag));
       row("Wheel", "Move closer to what is below the pointer, or away");
       row("Click", "Select the object");
       row("Ctrl + click", description(Action::explain));

@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
 #include "overlays/overlays.h"
 #include "program/load.h"
 #include "view_files.h"
+#include "viewer/labels.h"
 
 namespace quintet::viewer {
 namespace {
@@ -71,6 +73,7 @@ std::vector<Lesson> lessons() {
       // "Lesson 05: shadow. …" repeats the title.
       if (const std::size_t colon = lesson.text.find(": "); lesson.text.starts_with("Lesson ") && colon < 12)
         lesson.text.erase(0, colon + 2);
+      lesson.text = capitalized(lesson.text);
     } catch (const Error&) {
       continue;  // a program that cannot be read is no lesson
     }
@@ -105,7 +108,7 @@ void startScreen(ViewState& state, const Area& area, const std::vector<Lesson>& 
     logControl(lesson.program.c_str());
     tooltip(lesson.text);
     ImGui::SameLine(170.0f * state.scale);
-    ImGui::TextDisabled("%s", lesson.text.c_str());
+    ImGui::TextDisabled("%s", fittingText(lesson.text, ImGui::GetContentRegionAvail().x).c_str());
   }
   ImGui::EndChild();
   ImGui::End();
@@ -138,13 +141,24 @@ void failureScreen(ViewState& state, const Area& area) {
   const float left = 0.5f * (area.size.x - width);
   ImGui::SetCursorPos({left, 0.25f * area.size.y});
   ImGui::BeginChild("message", {width, 0.6f * area.size.y}, false);
-  ImGui::TextColored(palette(state.settings.theme).error, "The scene cannot be shown");
+  ImGui::PushFont(ImGui::GetIO().Fonts->Fonts.back());            // that of titles
+  const bool inProgram = hasErrors(state.snapshot->diagnostics);  // the drawer lists them
+  ImGui::TextColored(palette(state.settings.theme).error, "%s",
+                     inProgram ? "The program has errors" : "The scene cannot be shown");
+  ImGui::PopFont();
+  ImGui::Spacing();
   ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(state.snapshot->error.c_str());
+  if (inProgram)
+    ImGui::TextUnformatted("It is opened again as soon as one of its files is saved.");
+  else
+    ImGui::TextUnformatted(state.snapshot->error.c_str());
   ImGui::PopTextWrapPos();
+  ImGui::Spacing();
   ImGui::Spacing();
   if (button("Try again", "Load scene and program again", state.snapshot->request != nullptr))
     state.session->open(*state.snapshot->request);
+  ImGui::SameLine();
+  if (button("Open...", "Open another file (Ctrl+O)")) state.requests.push_back(Action::open);
   ImGui::EndChild();
   ImGui::End();
 }

@@ -47,11 +47,11 @@ void valueRow(const ViewState& state, const char* label, const vec3& value, cons
   const float width = ImGui::GetContentRegionAvail().x;
   ImGui::TextDisabled("%s", label);
   tooltip(help);
-  ImGui::SameLine(start + 0.4f * width);
+  ImGui::SameLine(start + kLabelShare * width);
   swatch(state, ImGui::GetCursorScreenPos(), value);
   ImGui::Dummy({1.4f * ImGui::GetTextLineHeight(), ImGui::GetTextLineHeight()});
   ImGui::SameLine();
-  const std::string text = colorText(value);
+  const std::string text = fittingText(colorText(value), ImGui::GetContentRegionAvail().x);
   ImGui::TextUnformatted(text.c_str());
   tooltip(fmt::format("{:.9g} {:.9g} {:.9g}", value.r, value.g, value.b));
 }
@@ -90,12 +90,9 @@ void result(ViewState& state) {
 
 // ---- The tree
 
-// Text in the faint color up to `right`.
-void clippedText(ImVec2 at, float right, ImU32 color, const std::string& text) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.PushClipRect(at, {right, at.y + ImGui::GetTextLineHeightWithSpacing()}, true);
-  list.AddText(at, color, text.c_str());
-  list.PopClipRect();
+// Text up to `right`.
+void drawText(ImVec2 at, float right, ImU32 color, const std::string& text) {
+  if (at.x < right) ImGui::GetWindowDrawList()->AddText(at, color, fittingText(text, right - at.x).c_str());
 }
 
 void treeRow(ViewState& state, std::size_t index) {
@@ -111,7 +108,7 @@ void treeRow(ViewState& state, std::size_t index) {
   const float right = origin.x + size.x;
   const float arrowEnd = origin.x + indent + line;
   ImGui::PushID(static_cast<int>(index));
-  if (ImGui::Selectable("##row", selected)) {
+  if (listRow("##row", selected)) {
     const bool onArrow = hasRows && ImGui::GetIO().MousePos.x < arrowEnd;
     if (!onArrow)
       state.selectRow(selected ? std::nullopt : std::optional(index));
@@ -146,9 +143,9 @@ void treeRow(ViewState& state, std::size_t index) {
   const bool ray = row.event->type == "ray";
   const ImU32 faint = ImGui::GetColorU32(ImGuiCol_TextDisabled);
   const float textEnd = right - (row.contribution ? 1.8f * line : 0.0f);
-  clippedText({arrowEnd, origin.y}, textEnd, ray || selected ? textColor : faint, row.name);
+  drawText({arrowEnd, origin.y}, textEnd, ray || selected ? textColor : faint, row.name);
   const float nameEnd = arrowEnd + ImGui::CalcTextSize(row.name.c_str()).x + 0.6f * line;
-  clippedText({nameEnd, origin.y}, textEnd, ray ? faint : textColor, row.summary);
+  drawText({nameEnd, origin.y}, textEnd, ray ? faint : textColor, row.summary);
   if (row.contribution) swatch(state, {right - 1.5f * line, origin.y}, *row.contribution);
 }
 

@@ -34,7 +34,7 @@ void lightProperties(ViewState& state, std::size_t index) {
   if (type != scene::LightType::directional) {
     const vec3 p = light.light.position;
     double position[3] = {p.x, p.y, p.z};
-    if (vectorField("Position", position, 3, {.unit = "m"}, "World space"))
+    if (vectorField("Position", position, 3, {}, "World space, meters"))
       set("position", {position[0], position[1], position[2]});
   }
   if (type != scene::LightType::point) {

@@ -10,11 +10,12 @@
 #include "gui/widgets.h"
 #include "panels/panels.h"
 #include "view_files.h"
+#include "viewer/labels.h"
 
 namespace quintet::viewer {
 namespace {
 
-constexpr float kRows = 8.0f;  // of the tree
+constexpr std::size_t kRows = 10;  // of the tree
 
 // Rows whose names contain `filter`, and those alone if there are many.
 template <class Name>
@@ -23,14 +24,28 @@ void list(ViewState& state, Selection::Kind kind, std::size_t count, const std::
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < count; ++i)
     if (wanted.empty() || lowerCase(nameOf(i)).find(wanted) != std::string::npos) rows.push_back(i);
+  // A selection in the image scrolls the list to its row.
+  static Selection revealed;
+  const bool reveals = state.selection.kind == kind && state.selection != revealed;
+  const auto selectedRow = std::ranges::find(rows, state.selection.index);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(rows.size()));
+  if (reveals && selectedRow != rows.end()) {
+    const auto row = static_cast<int>(selectedRow - rows.begin());
+    clipper.ForceDisplayRangeByIndices(row, row + 1);
+  }
   while (clipper.Step()) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t index = rows[static_cast<std::size_t>(row)];
       const bool selected = state.selection.kind == kind && state.selection.index == index;
       const std::string& name = nameOf(index);
-      if (ImGui::Selectable(fmt::format("{}##{}", name, index).c_str(), selected)) state.selection = {kind, index};
+      const std::string shown = fittingText(name, ImGui::GetContentRegionAvail().x);
+      if (listRow(fmt::format("{}##{}", shown, index).c_str(), selected)) state.selection = revealed = {kind, index};
+      if (shown != name) tooltip(name);
+      if (selected && reveals) {
+        ImGui::SetScrollHereY();
+        revealed = state.selection;
+      }
       if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0) && kind == Selection::Kind::instance)
         state.apply(job::interactive::Frame{name});
     }
@@ -81,15 +96,21 @@ void scenePanel(ViewState& state) {
   const SceneOutline& scene = *state.snapshot->scene;
   static std::string filter;
   textRow("Scene", scene.name.empty() ? "built-in scene" : scene.name);
-  if (scene.triangles.stored > 0)
-    textRow("Triangles", fmt::format("{} ({} instanced)", scene.triangles.stored, scene.triangles.instanced));
+  if (scene.triangles.stored > 0) textRow("Triangles", groupedDigits(scene.triangles.stored));
+  if (scene.triangles.instanced != scene.triangles.stored)
+    textRow("In all instances", groupedDigits(scene.triangles.instanced));
   variantChoice(state, scene.variants);
   animationChoice(state, scene.animations);
   if (scene.instances.size() + scene.materials.size() > 20)
     textField("Filter", filter, "Show only names that contain this text");
   else
     filter.clear();
-  ImGui::BeginChild("tree", {0, kRows * ImGui::GetTextLineHeightWithSpacing()}, true);
+  std::size_t rows = 0;
+  for (const std::size_t count : {scene.instances.size(), scene.materials.size(), scene.lights.size()})
+    rows += count > 0 ? count + 1 : 0;
+  const float height =
+      static_cast<float>(std::clamp(rows, std::size_t{3}, kRows)) * ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("tree", {0, height + 2.0f * ImGui::GetStyle().WindowPadding.y}, true);
   if (treeGroup("Objects", scene.instances.size(), true)) {
     list(state, Selection::Kind::instance, scene.instances.size(), filter,
          [&](std::size_t i) -> const std::string& { return scene.instances[i].name; });
