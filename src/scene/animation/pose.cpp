@@ -2,7 +2,6 @@
 #include "scene/animation/pose.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "base/parallel.h"
@@ -137,30 +136,6 @@ Material materialAt(const Material& material, std::span<const AnimatedValue> val
   Material changed = material;
   for (const AnimatedValue& value : values) setMaterialValue(changed, value.property, pose.values[value.value]);
   return changed;
-}
-
-std::vector<Material> materialStates(const Material& material, std::span<const AnimatedValue> values,
-                                     const NodeAnimation& animation) {
-  constexpr int kBetween = 4;  // states from one time to the next
-  std::set<float> times;
-  for (const AnimatedValue& value : values) {
-    const AnimationSampler& sampler = animation.animation.samplers[animation.values[value.value]];
-    times.insert(sampler.times.begin(), sampler.times.end());
-  }
-  std::vector<Material> states;
-  Pose pose;
-  pose.values.resize(animation.values.size());
-  const auto add = [&](double seconds) {
-    for (const AnimatedValue& value : values)
-      pose.values[value.value] = valueOf(animation.animation.samplers[animation.values[value.value]], seconds);
-    states.push_back(materialAt(material, values, pose));
-  };
-  for (auto next = times.begin(); next != times.end();) {
-    const double start = *next++;
-    const double length = next == times.end() ? 0.0 : double{*next} - start;
-    for (int i = 0; i < (length > 0.0 ? kBetween : 1); ++i) add(start + length * i / kBetween);
-  }
-  return states;
 }
 
 float lastFrame(const Scene& scene) {

@@ -34,9 +34,6 @@ Camera cameraAt(const Camera&, const Pose&);
 Light lightAt(const Light&, const Pose&);
 Material materialAt(const Material&, std::span<const AnimatedValue>, const Pose&);
 
-// Some states of a material during the animation, at and between all its times, for Scene::materialStates.
-std::vector<Material> materialStates(const Material&, std::span<const AnimatedValue>, const NodeAnimation&);
-
 // Last frame at which something changes, of keyframes and of the glTF animation; 0 without animation.
 float lastFrame(const Scene&);
 

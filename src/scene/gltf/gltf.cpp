@@ -9,6 +9,7 @@
 
 #include "base/memory_budget.h"
 #include "base/stopwatch.h"
+#include "scene/animation/material_states.h"
 #include "scene/animation/pose.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/animations.h"

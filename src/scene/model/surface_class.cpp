@@ -48,9 +48,8 @@ bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set) {
 }
 
 bool isPane(const Material& m) {
-  // A lobe with alpha = roughness² below 5e-4 (kDeltaAlpha) is a delta lobe. A texture can make parts of the surface
-  // smooth.
-  const bool smooth = m.roughness * m.roughness < 5.001e-4f || m.metallicRoughnessTexture.used();
+  // A texture can make parts of the surface smooth.
+  const bool smooth = m.roughness * m.roughness < kPaneAlpha || m.metallicRoughnessTexture.used();
   const bool metal = m.metallic >= 1.0f && !m.metallicRoughnessTexture.used();
   return m.transmission > 0.0f && m.thickness <= 0.0f && smooth && !metal && !m.unlit;
 }

@@ -14,6 +14,9 @@
 
 namespace quintet::scene {
 
+// A lobe with alpha = roughness² below 5e-4 (kDeltaAlpha) is a delta lobe; rounded up.
+inline constexpr float kPaneAlpha = 5.001e-4f;
+
 // True if the alpha mode is mask or blend and the alpha can be below 1.
 bool needsAlphaTest(const Scene& scene, const Geometry& geometry);
 bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set);
