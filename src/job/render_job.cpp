@@ -556,7 +556,7 @@ void RenderJob::requireAnimation(std::string_view consequence) const {
   const std::size_t ignored = scene_->ignoredAnimations;
   const std::string cause = ignored == 0
                                 ? "the scene has neither keyframes nor an animation"
-                                : fmt::format("{} {} not played, and no instance has keyframes",
+                                : fmt::format("{} {} not played, and nothing has keyframes",
                                               counted(ignored, "glTF animation"), nounFor(ignored, "is", "are"));
   throw UsageError(fmt::format("{}: {}, so {}, or add keyframes in a .scene.toml file (docs/scenes.md)",
                                job_.scene.name, cause, consequence));

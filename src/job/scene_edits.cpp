@@ -168,7 +168,7 @@ void RenderJob::setEnvironment(const EnvironmentRequest& environment) {
   if (sceneOutdated_) return;
   const auto isBlack = [&] {
     const scene::Environment& e = environmentInUse();
-    return !(e.intensity > 0.0f) || (e.image.empty() && e.constant == vec3(0.0f));
+    return (!(e.intensity > 0.0f) && e.values.empty()) || (e.image.empty() && e.constant == vec3(0.0f));
   };
   const bool wasBlack = isBlack();
   plainEnvironment_ = std::move(plain);

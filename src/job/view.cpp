@@ -163,6 +163,8 @@ void adjust(EnvironmentChoice& choice, const EnvironmentRequest& request) {
   scene::Environment& environment = choice.environment;
   environment.intensity = choice.sourceIntensity;
   environment.rotation = choice.sourceRotation;
+  environment.animatedIntensityFactor = request.intensity.value_or(1.0f);
+  environment.animatedRotationOffset = glm::radians(request.rotation.value_or(0.0f));
   if (request.intensity) environment.intensity *= *request.intensity;
   if (request.rotation) environment.rotation += glm::radians(*request.rotation);
 }

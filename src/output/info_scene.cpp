@@ -50,8 +50,8 @@ std::string describe(const scene::Camera& camera) {
 }
 
 std::string describe(const scene::Light& light) {
-  return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), nameOf(light.type), light.intensity.x,
-                     light.intensity.y, light.intensity.z,
+  return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), scene::nameOf(light.type),
+                     light.intensity.x, light.intensity.y, light.intensity.z,
                      light.type == scene::LightType::directional ? "W/m2" : "W/sr");
 }
 
@@ -63,6 +63,27 @@ std::string describe(const scene::AnimationSummary& animation) {
   const std::string ignored = animation.ignored > 0 ? fmt::format(" ({} ignored)", animation.ignored) : "";
   return fmt::format("'{}': {:.4g} s, {}{}", printable(animation.name), animation.seconds,
                      counted(animation.channels, "channel"), ignored);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : printable(fmt::format("{}", fmt::join(names, ", ")));
+}
+
+const char* nameOf(scene::Interpolation interpolation) {
+  switch (interpolation) {
+    case scene::Interpolation::step: return "step";
+    case scene::Interpolation::linear: return "linear";
+    case scene::Interpolation::cubicSpline: return "cubic";
+  }
+  return "";
+}
+
+std::string describe(const scene::KeyframeSummary& summary) {
+  std::vector<std::string> keys;
+  for (const auto& [name, interpolation] : summary.keys)
+    keys.push_back(fmt::format("{} {}", name, nameOf(interpolation)));
+  return fmt::format("{}: {} from {:.4g} to {:.4g} s: {}", printable(summary.object),
+                     counted(summary.count, "keyframe"), summary.firstSeconds, summary.lastSeconds, joined(keys));
 }
 
 struct MaterialCounts {
@@ -132,9 +153,20 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
                       {"seconds", animation.seconds},
                       {"channels", animation.channels},
                       {"ignoredChannels", animation.ignored}});
+  if (kind == std::string_view("keyframes"))
+    for (const scene::KeyframeSummary& summary : scene.report.keyframes) {
+      Json keys = Json::object();
+      for (const auto& [name, interpolation] : summary.keys) keys[name] = nameOf(interpolation);
+      list.push_back({{"object", summary.object},
+                      {"count", summary.count},
+                      {"firstSeconds", summary.firstSeconds},
+                      {"lastSeconds", summary.lastSeconds},
+                      {"keys", keys}});
+    }
   if (kind == std::string_view("lights"))
     for (const scene::Light& light : scene.lights)
-      list.push_back({{"name", light.name}, {"type", nameOf(light.type)}, {"intensity", vectorJson(light.intensity)}});
+      list.push_back(
+          {{"name", light.name}, {"type", scene::nameOf(light.type)}, {"intensity", vectorJson(light.intensity)}});
   return list;
 }
 
@@ -198,6 +230,7 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
           {"lights", namedObjects(scene, "lights")},
           {"cameras", namedObjects(scene, "cameras")},
           {"animations", namedObjects(scene, "animations")},
+          {"keyframes", namedObjects(scene, "keyframes")},
           {"environment", scene.environment.present},
           {"extensions", {{"used", scene.report.extensionsUsed}, {"ignored", scene.report.extensionsIgnored}}},
           {"metadata", metadataJson(scene.report)},
@@ -212,10 +245,6 @@ void addList(std::string& text, const char* label, const std::string& head, cons
   text += fmt::format("   {:<12}{}\n", label, head);
   std::size_t index = 0;
   for (const auto& element : list) text += fmt::format("   {:<12}  {} {}\n", "", index++, describeOne(element));
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : printable(fmt::format("{}", fmt::join(names, ", ")));
 }
 
 // "LOCATION: NAME CONVERSION" for each extension whose values are stored in a different form.
@@ -299,6 +328,8 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   addList(text, "lights", fmt::format("{}", scene.lights.size()), scene.lights, describeAny);
   addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
   addList(text, "animations", fmt::format("{}", scene.report.animations.size()), scene.report.animations, describeAny);
+  if (!scene.report.keyframes.empty())
+    addList(text, "keyframes", fmt::format("{}", scene.report.keyframes.size()), scene.report.keyframes, describeAny);
   text += featuresText(scene.report);
   const std::vector<std::string> converted = convertedLines(scene.report);
   if (!converted.empty()) addList(text, "converted", fmt::format("{}", converted.size()), converted, itself);

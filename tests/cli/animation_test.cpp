@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render` with glTF animations: a time, frames, the choice of the animation, and finished frames that are skipped.
+// `render` with glTF animations and keyframes of scene files: a time, frames, the choice of the animation, motion blur of
+// cameras, and finished frames that are skipped.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -126,6 +127,45 @@ TEST_F(Animation, InfoListsThem) {
   EXPECT_EQ(json["animations"][0]["name"], "Right");
   EXPECT_EQ(json["animations"][0]["seconds"], 1.0);
   EXPECT_EQ(json["animations"][0]["channels"], 1);
+}
+
+// The camera moves to the right, so that the quad leaves the image on the left side.
+constexpr const char* kMovingCamera = R"([[mesh]]
+shape = "quad"
+size = 1
+[[camera]]
+look_from = [0, 0, 5]
+look_at = [0, 0, 0]
+fov = 40
+keyframes = [{ time = 0 }, { time = 1, look_from = [8.8, 0, 5], look_at = [8.8, 0, 0] }]
+)";
+
+TEST_F(Animation, KeyframesMoveCameras) {
+  write(folder_ / "pan.scene.toml", std::string(kMovingCamera));
+  const auto pan = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", "pan.scene.toml", "-o",    file,   "--program", "normals",
+                                       "--size", "16x10",          "--env", "none", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = quintet(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  pan("rest.png", {"--spp", "1"});
+  EXPECT_EQ(seen("rest.png"), "center ");
+  pan("f#.png", {"--frames", "0-4", "--fps", "4", "--spp", "1"});
+  EXPECT_EQ(seen("f0.png"), "center ");
+  EXPECT_EQ(seen("f1.png"), "left ");
+  EXPECT_EQ(seen("f4.png"), "");
+  // Motion blur is the mean of the images of the times: the shutter is open from the first of these frames to the second.
+  pan("blur.png", {"--at", "0.125", "--fps", "8", "--shutter", "-1,1", "--spp", "32"});
+  const io::Image blurred = readImage("blur.png");
+  const auto blue = [&](std::uint32_t x) { return blurred.pixel<std::uint8_t>(x, 5)[2]; };
+  for (const std::uint32_t x : {1u, 4u, 8u}) EXPECT_TRUE(blue(x) > 60 && blue(x) < 230) << x << ": " << +blue(x);
+  EXPECT_EQ(blue(14), 0);
+  const nlohmann::json json = nlohmann::json::parse(quintet({"info", "pan.scene.toml", "--json"}).out);
+  EXPECT_EQ(json["keyframes"], nlohmann::json::parse(R"([{"object": "[[camera]]", "count": 2, "firstSeconds": 0.0,
+      "lastSeconds": 1.0, "keys": {"look_from": "linear", "look_at": "linear"}}])"));
+  EXPECT_THAT(quintet({"info", "pan.scene.toml"}).out,
+              HasSubstr("0 [[camera]]: 2 keyframes from 0 to 1 s: look_from linear, look_at linear"));
 }
 
 TEST_F(Animation, Errors) {

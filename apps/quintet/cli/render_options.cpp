@@ -151,7 +151,7 @@ void declareAnimation(OptionTable& table, RenderTexts& texts, RenderOptions& opt
               .candidates = {.names = {"none"}}},
              {.names = "--fps",
               .value = "N",
-              .help = "Frames per second of glTF animations, of times, and of videos (default: 24)",
+              .help = "Frames per second of animations, of times, and of videos (default: 24)",
               .target = &texts.fps},
              {.names = "--shutter",
               .value = "OPEN,CLOSE",

@@ -111,7 +111,7 @@ EnvironmentTable buildEnvironmentTable(const scene::Environment& environment) {
   }
   table.unscaledIntegral = table.integral;
   table.integral *= environment.intensity;
-  if (!(environment.intensity > 0.0f)) return {};
+  if (!(environment.intensity > 0.0f) && environment.values.empty()) return {};
   table.entries = buildAliasTable(weights);
   if (table.entries.empty()) return {};
   table.width = size.x;

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kMaxEnvironmentTableWidth = 4096;
 inline constexpr std::uint32_t kMaxEnvironmentTableHeight = 2048;
 
 struct EnvironmentTable {
-  std::uint32_t width = 0;  // in cells; 0 means that the environment is black
+  std::uint32_t width = 0;  // in cells; 0 means that the environment is always black
   std::uint32_t height = 0;
   std::vector<shared::AliasEntry> entries;  // in row-major order from the top
   double integral = 0.0;  // ∫ luminance dω over the sphere, including the intensity; W/m² on a unit cross section

@@ -29,6 +29,12 @@ io::Image cleanEnvironment(const io::Image& image) {
   return clean;
 }
 
+void setScaleAndRotation(shared::EnvironmentData& data, const scene::Environment& environment, const vec3& unscaled) {
+  data.scale = environment.intensity * unscaled;
+  data.cosRotation = std::cos(environment.rotation);
+  data.sinRotation = std::sin(environment.rotation);
+}
+
 // Pads the tables of moving lights to their largest sizes. The lights that have power can change with the frame, and
 // the buffers must hold all of them.
 void padTables(LightTable& table) {
@@ -85,7 +91,7 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   EnvironmentTable environmentTable = std::move(builder.environment());
   firstLightSlots_ = table.firstSlots;
   if (std::ranges::any_of(scene.lights, &scene::Light::animated)) punctual_ = scene.lights;
-  if (builder.hasMovingLights() || options_.editable) {
+  if (builder.hasMovingLights() || options_.editable || !environment.values.empty()) {
     builder.copyGeometry();
     lightBuilder_ = std::move(builder);
   }
@@ -139,9 +145,28 @@ void DeviceScene::showEnvironment(const scene::Environment& environment, const E
     data.table = environment.image.empty() ? constantEnvironment_.address() : environmentImage_.entries.address();
   }
   data.texture = environment.image.empty() ? shared::kNoTexture : environmentImage_.texture;
-  data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
-  data.cosRotation = std::cos(environment.rotation);
-  data.sinRotation = std::sin(environment.rotation);
+  const vec3 unscaled = environment.image.empty() ? environment.constant : vec3(1.0f);
+  setScaleAndRotation(data, environment, unscaled);
+  animatedEnvironment_.reset();
+  if (environment.values.empty()) return;
+  AnimatedEnvironment& animated = animatedEnvironment_.emplace();
+  animated.environment.constant = unscaled;
+  animated.environment.values = environment.values;
+  animated.environment.animatedIntensityFactor = environment.animatedIntensityFactor;
+  animated.environment.animatedRotationOffset = environment.animatedRotationOffset;
+  animated.environment.intensity = environment.intensity;
+  animated.environment.rotation = environment.rotation;
+  animated.unscaledIntegral = table.width > 0 ? table.unscaledIntegral : 0.0;
+}
+
+void DeviceScene::moveEnvironment(const scene::Pose& pose) {
+  scene::Environment& environment = animatedEnvironment_->environment;
+  scene::moveEnvironment(environment, pose);
+  setScaleAndRotation(frame_.environment, environment, environment.constant);
+  const double integral = animatedEnvironment_->unscaledIntegral * environment.intensity;
+  if (integral == lightBuilder_->environmentIntegral()) return;  // it has only turned
+  lightBuilder_->setEnvironment(integral);
+  lightsOutdated_ = true;
 }
 
 void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
@@ -295,6 +320,7 @@ void DeviceScene::showFrame(double frame, bool withPrevious) {
   watch.lap();
   if (deformed_ || topLevel_->animated()) topLevel_->setPose(pose, before);
   frameStatistics_.topLevelSeconds += watch.lap();
+  if (animatedEnvironment_) moveEnvironment(pose);
   if (!lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
   moveEmitters();
   if (!punctual_.empty()) movePunctualLights(pose);
@@ -392,12 +418,16 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
   EnvironmentTable table;
   if (environment.image.empty()) {
     table = buildEnvironmentTable(environment);
-  } else if (environment.intensity > 0.0f) {
+  } else if (environment.intensity > 0.0f || !environment.values.empty()) {
     if (environmentImage_.table.width == 0) return false;
     table = environmentImage_.table;
     table.integral = table.unscaledIntegral * environment.intensity;
   }
   showEnvironment(environment, table);
+  if (animatedEnvironment_) {
+    moveEnvironment(scene::poseAt(nodeAnimation_.get(), shownFrame_));
+    return true;
+  }
   const double integral = table.width > 0 ? table.integral : 0.0;
   if (integral == lightBuilder_->environmentIntegral()) return true;  // it has only turned
   lightBuilder_->setEnvironment(integral);

@@ -138,6 +138,7 @@ class DeviceScene {
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
+  void moveEnvironment(const scene::Pose& pose);
   void showFrame(double frame, bool withPrevious);
   void showDeformation(const scene::Pose& pose);
   void movePunctualLights(const scene::Pose& pose);  // in the builder
@@ -167,6 +168,12 @@ class DeviceScene {
   gpu::Buffer geometryTable_, materialTable_, albedoTable_;
   EnvironmentImage environmentImage_;  // of the constructor's environment
   gpu::Buffer constantEnvironment_;    // table of an environment without an image
+  // If the animation changes the environment: without its image, which has the constant 1, and the integral of its table.
+  struct AnimatedEnvironment {
+    scene::Environment environment;
+    double unscaledIntegral = 0;
+  };
+  std::optional<AnimatedEnvironment> animatedEnvironment_;
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
   std::optional<LightTableBuilder> lightBuilder_;  // only if lights move, or for edits

@@ -85,7 +85,8 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
            std::ranges::any_of(scene.materialStates,
                                [&](const auto& states) { return std::ranges::any_of(states, predicate); });
   };
-  const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+  const float intensity = environment.values.empty() ? environment.intensity : 1.0f;  // at any time
+  const vec3 environmentScale = intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
 
   SceneFeatures features;
   Defines& defines = features.defines;

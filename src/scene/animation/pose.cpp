@@ -102,7 +102,8 @@ mat4 worldFromObjectAt(const Instance& instance, const Pose& pose) {
   if (instance.node == kNone) return worldFromObjectAt(instance, frame);
   const mat4 placed = instance.placedFromRoot * pose.worldFromNode[static_cast<std::size_t>(instance.node)] *
                       instance.animatedFromObject;
-  return instance.keyframes.empty() ? placed : keyframeMatrixAt(instance.keyframes, frame) * placed;
+  return instance.keyframes.empty() ? placed
+                                    : keyframeMatrixAt(instance.keyframes, frame, instance.interpolation) * placed;
 }
 
 mat4 shownTransformAt(const Instance& instance, const Pose& pose) {
@@ -130,6 +131,11 @@ Light lightAt(const Light& light, const Pose& pose) {
   for (const AnimatedValue& value : light.values) setLightValue(moved, value.property, pose.values[value.value]);
   if (!isVisible(light.visibleNode, pose)) moved.intensity = vec3(0.0f);
   return moved;
+}
+
+void moveEnvironment(Environment& environment, const Pose& pose) {
+  for (const AnimatedValue& value : environment.values)
+    setEnvironmentValue(environment, value.property, pose.values[value.value]);
 }
 
 Material materialAt(const Material& material, std::span<const AnimatedValue> values, const Pose& pose) {
@@ -182,6 +188,7 @@ void applyPose(Scene& scene, const Pose& pose, Hidden hidden) {
   for (Instance& instance : scene.instances)
     instance.worldFromObject = hide ? shownTransformAt(instance, pose) : worldFromObjectAt(instance, pose);
   for (Camera& camera : scene.cameras) camera = cameraAt(camera, pose);
+  moveEnvironment(scene.environment, pose);
   for (Light& light : scene.lights) {
     const int visibleNode = std::exchange(light.visibleNode, hide ? light.visibleNode : kNone);
     light = lightAt(light, pose);

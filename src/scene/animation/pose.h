@@ -32,6 +32,7 @@ mat4 shownTransformAt(const Instance&, const Pose&);
 // rigid. A light that is not visible has the intensity 0.
 Camera cameraAt(const Camera&, const Pose&);
 Light lightAt(const Light&, const Pose&);
+void moveEnvironment(Environment&, const Pose&);  // in place, because it can have a large image
 Material materialAt(const Material&, std::span<const AnimatedValue>, const Pose&);
 
 // Last frame at which something changes, of keyframes and of the glTF animation; 0 without animation.

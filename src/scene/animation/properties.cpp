@@ -6,6 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "scene/defaults/auto_camera.h"
+#include "scene/geometry/repair.h"
 #include "scene/model/material_textures.h"
 
 namespace quintet::scene {
@@ -16,9 +18,10 @@ constexpr float kSmallest = std::numeric_limits<float>::min();
 
 template <class Object>
 struct Row {
-  std::string_view pointer;
+  std::string_view pointer;  // empty if the object of glTF does not have the property
   std::size_t size;
   void (*set)(Object&, const vec4& value);
+  std::string_view key = {};  // in scene files; empty if they cannot animate the property
 };
 
 // Setters of members with a range.
@@ -107,35 +110,85 @@ constexpr auto kTransformRows = std::to_array<Row<TextureUse>>({
 });
 
 constexpr auto kLightRows = std::to_array<Row<Light>>({
-    {"color", 3, [](Light& l, const vec4& v) { l.intensity = glm::clamp(vec3(v), 0.0f, kHuge); }},
-    {"intensity", 1, [](Light& l, const vec4& v) { l.intensity *= std::clamp(v.x, 0.0f, kHuge); }},
+    {"color", 3, [](Light& l, const vec4& v) { l.intensity = glm::clamp(vec3(v), 0.0f, kHuge); }, "color"},
+    {"intensity", 1,
+     [](Light& l, const vec4& v) { l.intensity = glm::min(l.intensity * std::clamp(v.x, 0.0f, kHuge), kHuge); },
+     "intensity"},
     {"range", 1,
      [](Light& l, const vec4& v) {
        if (l.type != LightType::directional) l.range = v.x > 0.0f ? v.x : Light().range;
-     }},
+     },
+     "range"},
     {"spot/outerConeAngle", 1,
      [](Light& l, const vec4& v) {
        l.outerConeAngle = std::clamp(v.x, 1e-4f, kPi / 2.0f);
        l.innerConeAngle = std::min(l.innerConeAngle, l.outerConeAngle);
-     }},
+     },
+     "outer_angle"},
     {"spot/innerConeAngle", 1,
-     [](Light& l, const vec4& v) { l.innerConeAngle = std::clamp(v.x, 0.0f, l.outerConeAngle); }},
+     [](Light& l, const vec4& v) { l.innerConeAngle = std::clamp(v.x, 0.0f, l.outerConeAngle); }, "inner_angle"},
+    {"", 3,
+     [](Light& l, const vec4& v) {
+       if (isFinite(vec3(v))) l.position = vec3(v);
+     },
+     "position"},
+    {"", 3, [](Light& l, const vec4& v) { l.direction = directionOr(vec3(v), l.direction); }, "direction"},
+    {"", 3, [](Light& l, const vec4& v) { l.direction = directionOr(vec3(v) - l.position, l.direction); }, "target"},
 });
 
 constexpr float kSmallestAngle = 1e-4f;
+
+// Sets the z axis of the frame; `up` makes the frame rigid.
+void setLookAt(Camera& camera, const vec4& value) {
+  const vec3 toTarget = vec3(value) - vec3(camera.worldFromCamera[3]);
+  const float distance = glm::length(toTarget);
+  if (!std::isfinite(distance) || !(distance > 0.0f)) return;
+  camera.worldFromCamera[2] = vec4(toTarget / -distance, 0.0f);
+  camera.focusDistance = distance;
+}
+
+void setUp(Camera& camera, const vec4& value) {
+  const vec3 back = directionOr(vec3(camera.worldFromCamera[2]), vec3(0, 0, 1));
+  const vec3 up = directionOr(vec3(value), vec3(camera.worldFromCamera[1]));
+  camera.worldFromCamera = lookingFrame(vec3(camera.worldFromCamera[3]), -back, up);
+}
+
 constexpr auto kCameraRows = std::to_array<Row<Camera>>({
     {"perspective/yfov", 1,
-     [](Camera& c, const vec4& v) { c.verticalFov = std::clamp(v.x, kSmallestAngle, kPi - kSmallestAngle); }},
+     [](Camera& c, const vec4& v) { c.verticalFov = std::clamp(v.x, kSmallestAngle, kPi - kSmallestAngle); }, "fov"},
     {"orthographic/xmag", 1,
      [](Camera& c, const vec4& v) { c.orthographicHalfSize.x = std::max(std::abs(v.x), kSmallest); }},
     {"orthographic/ymag", 1,
      [](Camera& c, const vec4& v) { c.orthographicHalfSize.y = std::max(std::abs(v.x), kSmallest); }},
+    {"", 2, [](Camera& c, const vec4& v) { c.orthographicHalfSize = glm::clamp(vec2(v), kSmallest, kHuge); },
+     "orthographic"},
+    {"", 3,
+     [](Camera& c, const vec4& v) {
+       if (isFinite(vec3(v))) c.worldFromCamera[3] = vec4(vec3(v), 1.0f);
+     },
+     "look_from"},
+    {"", 3, setLookAt, "look_at"},
+    {"", 3, setUp, "up"},
+    {"", 1, [](Camera& c, const vec4& v) { c.focusDistance = std::clamp(v.x, kSmallest, kHuge); }, "focus"},
+    {"", 1, [](Camera& c, const vec4& v) { c.apertureRadius = std::clamp(v.x, 0.0f, kHuge); }, "aperture"},
+});
+
+constexpr auto kEnvironmentRows = std::to_array<Row<Environment>>({
+    {"", 1,
+     [](Environment& e, const vec4& v) { e.intensity = std::clamp(v.x * e.animatedIntensityFactor, 0.0f, kHuge); },
+     "intensity"},
+    {"", 1,
+     [](Environment& e, const vec4& v) {
+       if (std::isfinite(v.x)) e.rotation = v.x + e.animatedRotationOffset;
+     },
+     "rotation"},
 });
 
 template <class Object>
-std::optional<PropertyInfo> find(std::span<const Row<Object>> rows, std::string_view pointer) {
-  const auto found = std::ranges::find(rows, pointer, &Row<Object>::pointer);
-  if (found == rows.end()) return std::nullopt;
+std::optional<PropertyInfo> find(std::span<const Row<Object>> rows, std::string_view name,
+                                 std::string_view Row<Object>::*column = &Row<Object>::pointer) {
+  const auto found = std::ranges::find(rows, name, column);
+  if (name.empty() || found == rows.end()) return std::nullopt;
   return PropertyInfo{static_cast<std::size_t>(found - rows.begin()), found->size};
 }
 
@@ -155,6 +208,16 @@ std::optional<PropertyInfo> findMaterialProperty(std::string_view pointer) {
 std::optional<PropertyInfo> findLightProperty(std::string_view pointer) { return find<Light>(kLightRows, pointer); }
 std::optional<PropertyInfo> findCameraProperty(std::string_view pointer) { return find<Camera>(kCameraRows, pointer); }
 
+std::optional<PropertyInfo> findLightKey(std::string_view key) {
+  return find<Light>(kLightRows, key, &Row<Light>::key);
+}
+std::optional<PropertyInfo> findCameraKey(std::string_view key) {
+  return find<Camera>(kCameraRows, key, &Row<Camera>::key);
+}
+std::optional<PropertyInfo> findEnvironmentKey(std::string_view key) {
+  return find<Environment>(kEnvironmentRows, key, &Row<Environment>::key);
+}
+
 void setMaterialValue(Material& material, std::size_t property, const vec4& value) {
   if (property < kMaterialRows.size()) return kMaterialRows[property].set(material, value);
   const std::size_t transform = property - kMaterialRows.size();
@@ -165,6 +228,9 @@ void setMaterialValue(Material& material, std::size_t property, const vec4& valu
 void setLightValue(Light& light, std::size_t property, const vec4& value) { kLightRows[property].set(light, value); }
 void setCameraValue(Camera& camera, std::size_t property, const vec4& value) {
   kCameraRows[property].set(camera, value);
+}
+void setEnvironmentValue(Environment& environment, std::size_t property, const vec4& value) {
+  kEnvironmentRows[property].set(environment, value);
 }
 
 }  // namespace quintet::scene

@@ -33,6 +33,12 @@ Box usableBox(const Bounds3& bounds) {
   return box;
 }
 
+// `up`, or a fixed axis if the view is along it. Both vectors are unit.
+vec3 uprightFor(const vec3& direction, const vec3& up) {
+  if (glm::length(glm::cross(direction, up)) >= 1e-5f) return up;
+  return std::abs(up.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
+}
+
 dmat3 viewAxes() {  // columns: right, up, backwards
   const double azimuth = glm::radians(kAzimuth), elevation = glm::radians(kElevation);
   const dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
@@ -109,15 +115,19 @@ Camera lookAtCamera(const vec3& eye, const vec3& target, const vec3& up, float v
   const vec3 toTarget = target - eye;
   if (!(glm::length(toTarget) > 0.0f)) throw UsageError("the camera position is also the point that it looks at");
   if (!(glm::length(up) > 0.0f)) throw UsageError("the camera's up vector is zero");
-  vec3 upright = glm::normalize(up);
-  if (glm::length(glm::cross(glm::normalize(toTarget), upright)) < 1e-5f)
-    upright = std::abs(upright.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
+  const vec3 upright = uprightFor(glm::normalize(toTarget), glm::normalize(up));
   Camera camera;
   camera.worldFromCamera = glm::inverse(glm::lookAtRH(eye, target, upright));
   camera.focusDistance = glm::length(toTarget);
   camera.verticalFov = verticalFov;
   camera.apertureRadius = apertureRadius;
   return camera;
+}
+
+mat4 lookingFrame(const vec3& eye, const vec3& direction, const vec3& up) {
+  mat4 frame = glm::transpose(glm::lookAtRH(vec3(0.0f), direction, uprightFor(direction, up)));
+  frame[3] = vec4(eye, 1.0f);
+  return frame;
 }
 
 }  // namespace quintet::scene

@@ -18,5 +18,8 @@ Camera frameScene(const Bounds3& bounds, float aspect);
 // is zero.
 Camera lookAtCamera(const vec3& eye, const vec3& target, const vec3& up, float verticalFov, float apertureRadius);
 
+// The frame of a camera at `eye` that looks along `direction`, with `up` as in lookAtCamera(). Both are unit.
+mat4 lookingFrame(const vec3& eye, const vec3& direction, const vec3& up);
+
 }  // namespace quintet::scene
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The animation of a glTF file as plain structs: a tree of nodes, the channels that move them, skins, and the vertices
-// that skins and morph targets deform (glTF 2.0 sections 3.7.2.2, 3.7.3 and 3.11). animation/pose.h evaluates it.
+// An animation as plain structs: a tree of nodes, the channels that move them, skins, and the vertices that skins and
+// morph targets deform (glTF 2.0 sections 3.7.2.2, 3.7.3 and 3.11), and values that change, of a glTF file or of the
+// keyframes of a scene file. animation/pose.h evaluates it.
 #ifndef QUINTET_SCENE_MODEL_ANIMATION_H
 #define QUINTET_SCENE_MODEL_ANIMATION_H
 
@@ -41,7 +42,7 @@ struct Animation {
   std::vector<AnimationChannel> channels;  // at most one per node and property
 };
 
-// A property of a material, light or camera that follows a sampler (KHR_animation_pointer).
+// A property of a material, light or camera that follows a sampler (KHR_animation_pointer, keyframes of a scene file).
 struct AnimatedValue {
   std::size_t property = 0;  // index in the table of the kind of object (animation/properties.h)
   std::size_t value = 0;     // index in NodeAnimation::values
@@ -70,7 +71,7 @@ struct Skin {
 };
 
 // All nodes of a file, by their index in the file, and the animation that plays. A scene file has the nodes and the
-// animations of all its glTF files, one after the other.
+// animations of all its glTF files, one after the other, and the samplers of its keyframes.
 struct NodeAnimation {
   std::vector<AnimationNode> nodes;
   std::vector<int> order;  // of `nodes`, parents before children
@@ -119,6 +120,18 @@ struct AnimationSummary {
   double seconds = 0;  // largest time
   std::size_t channels = 0;
   std::size_t ignored = 0;  // of the channels, those with an unsupported target
+};
+
+// Of an object of a scene file with keyframes.
+struct KeyframeSummary {
+  struct Key {
+    std::string name;  // "position"
+    Interpolation interpolation = Interpolation::linear;
+  };
+  std::string object;     // "[[light]] 'lamp'"
+  std::vector<Key> keys;  // that change
+  std::size_t count = 0;  // of keyframes, at least 1
+  double firstSeconds = 0, lastSeconds = 0;
 };
 
 }  // namespace quintet::scene

@@ -80,6 +80,8 @@ class Feeder {
   }
   void add(const Instance& i) {
     (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.animatedFromObject);
+    if (i.interpolation != KeyframeInterpolation{})
+      (*this)(i.interpolation.translation, i.interpolation.rotation, i.interpolation.scale);
     addNode(i.node);
     addNode(i.visibleNode);
     if (i.node != kNone) add(i.placedFromRoot);
@@ -119,7 +121,10 @@ class Feeder {
     (*this)(a->nodes, a->skins, a->animation.samplers, a->animation.channels, a->framesPerSecond);
     (*this)(a->values, a->materials);
   }
-  void add(const Environment& e) { (*this)(e.image, e.constant, e.intensity, e.rotation, e.present); }
+  void add(const Environment& e) {
+    (*this)(e.image, e.constant, e.intensity, e.rotation, e.present);
+    if (!e.values.empty()) (*this)(e.values, e.animatedIntensityFactor, e.animatedRotationOffset);
+  }
 
   Hasher hasher_;
 };

@@ -57,6 +57,7 @@ void makePrintable(Report& report) {
     for (std::string* text : {&feature.name, &feature.location, &feature.reason}) *text = printable(*text);
   for (MetadataEntry& entry : report.metadata)
     for (std::string* text : {&entry.object, &entry.name, &entry.value}) *text = printable(*text);
+  for (KeyframeSummary& summary : report.keyframes) summary.object = printable(summary.object);
   report.generator = printable(report.generator);
   report.copyright = printable(report.copyright);
 }

@@ -56,6 +56,7 @@ struct Report {
   std::vector<Feature> features;               // everything that the file contains
   std::vector<std::string> ignored;            // "/meshes/0/primitives/2: mode LINES has no surface"
   std::vector<AnimationSummary> animations;    // of a glTF file, whether they play or not
+  std::vector<KeyframeSummary> keyframes;      // of a scene file, in the order in which its tables are read
   std::size_t ignoredAnimations = 0;           // of glTF files, because none plays
   std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;                       // asset.generator

@@ -144,13 +144,20 @@ inline constexpr std::uint32_t kInstanceFlipFacing = 2;
 inline constexpr std::uint32_t kInstanceForceOpaque = 4;
 inline constexpr std::uint32_t kInstanceForceNoOpaque = 8;
 
-// Transform of an instance at a frame of an animation. Between keyframes, translation and scale are interpolated
-// linearly, rotation spherically.
+// Transform of an instance at a frame of an animation.
 struct Keyframe {
   float frame = 0;
   vec3 translation{0.0f};
   quat rotation{1, 0, 0, 0};  // w, x, y, z; unit
   vec3 scale{1.0f};
+};
+
+// How the parts of keyframes are interpolated (animation/keyframes.h).
+struct KeyframeInterpolation {
+  Interpolation translation = Interpolation::linear;
+  Interpolation rotation = Interpolation::linear;
+  Interpolation scale = Interpolation::linear;
+  bool operator==(const KeyframeInterpolation&) const = default;
 };
 
 struct Instance {
@@ -161,6 +168,7 @@ struct Instance {
   std::uint32_t flags = 0;          // kInstance… bits
   std::uint32_t customIndex = 0;    // 24 bits, for the program
   std::vector<Keyframe> keyframes;  // ascending frames; if not empty, worldFromObject is the transform at frame 0
+  KeyframeInterpolation interpolation;
   // Index in NodeAnimation::nodes of the node that the instance follows, or kNone. worldFromObject is then the
   // transform at frame 0.
   int node = kNone;
@@ -208,11 +216,15 @@ struct Light {
 // top row (the convention of the reference images). An empty image means `constant` everywhere.
 struct Environment {
   std::string name;
-  io::Image image;         // float RGB(A), linear, or empty
-  vec3 constant{0.0f};     // radiance
-  float intensity = 1.0f;  // multiplies image and constant
-  float rotation = 0.0f;   // radians about +y, counter-clockwise seen from above
-  bool present = false;    // false if the file has no environment; the renderer then chooses one
+  io::Image image;                    // float RGB(A), linear, or empty
+  vec3 constant{0.0f};                // radiance
+  float intensity = 1.0f;             // multiplies image and constant
+  float rotation = 0.0f;              // radians about +y, counter-clockwise seen from above
+  bool present = false;               // false if the file has no environment; the renderer then chooses one
+  std::vector<AnimatedValue> values;  // sorted by property; the environment is that of frame 0
+  // Change what the animation sets, for users who adjust the environment.
+  float animatedIntensityFactor = 1.0f;
+  float animatedRotationOffset = 0.0f;  // radians
 };
 
 struct NamedImage {
@@ -237,8 +249,8 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Environment environment;
-  // Moves instances, cameras and lights with a node, and deforms meshes. Null if no glTF animation plays. The scene is
-  // that of frame 0.
+  // Moves instances, cameras and lights with a node, deforms meshes, and changes values. Null if no glTF animation plays
+  // and only instances have keyframes. The scene is that of frame 0.
   std::shared_ptr<const NodeAnimation> nodeAnimation;
   // Of each material, some of its states during the animation: each feature that it has at any time, one of them has.
   // Empty without animated materials; else parallel to `materials`, and empty for those that do not change.

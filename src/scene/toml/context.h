@@ -39,7 +39,9 @@ struct SceneTomlContext {
         folder(sceneFile.parent_path()),
         options(loadOptions),
         sharedBudget(std::make_shared<MemoryBudget>(sceneFile, loadOptions.maxMemory)),
-        budget(*sharedBudget) {}
+        budget(*sharedBudget) {
+    animation.framesPerSecond = loadOptions.framesPerSecond;
+  }
 
   const std::filesystem::path file;
   const std::filesystem::path folder;  // paths in the file are relative to it
@@ -47,7 +49,7 @@ struct SceneTomlContext {
   const std::shared_ptr<MemoryBudget> sharedBudget;  // also of the glTF files
   MemoryBudget& budget;
   Scene scene;
-  NodeAnimation animation;                        // of the glTF files; of the scene if it has samplers
+  NodeAnimation animation;                        // of the glTF files and keyframes; of the scene if it has samplers
   std::map<std::string, int> materials;           // "name" or "file/name"
   std::map<std::string, InstanceTarget> targets;  // "name" or "file/mesh"
   std::map<std::string, NamedTree> trees;
@@ -88,13 +90,14 @@ vec3 toColor(const TomlReader& reader, const TomlValue& value, std::string_view 
 vec3 readColor(TomlReader& reader, const std::string& key, const vec3& fallback, const NumberRange& range);
 
 // Readers of the parts, in the order in which they are called. Each is in the file of its name.
-void readFiles(SceneTomlContext&, TomlReader& root);       // [[file]]
-void readMaterials(SceneTomlContext&, TomlReader& root);   // [[material]]
-void readMeshes(SceneTomlContext&, TomlReader& root);      // [[mesh]]
-void readPrimitives(SceneTomlContext&, TomlReader& root);  // [[spheres]] … [[tori]], [[csg]], [[custom]]
-void readInstances(SceneTomlContext&, TomlReader& root);   // [[instance]], and objects without one
-void readView(SceneTomlContext&, TomlReader& root);        // [[light]], [[camera]], [environment]
-void finishAnimation(SceneTomlContext&);                   // of the glTF files; it is in files.cpp
+void readFiles(SceneTomlContext&, TomlReader& root);        // [[file]]
+void readMaterials(SceneTomlContext&, TomlReader& root);    // [[material]]
+void readMeshes(SceneTomlContext&, TomlReader& root);       // [[mesh]]
+void readPrimitives(SceneTomlContext&, TomlReader& root);   // [[spheres]] … [[tori]], [[csg]], [[custom]]
+void readInstances(SceneTomlContext&, TomlReader& root);    // [[instance]], and objects without one
+void readLights(SceneTomlContext&, TomlReader& root);       // [[light]]
+void readCameras(SceneTomlContext&, TomlReader& root);      // [[camera]]
+void readEnvironment(SceneTomlContext&, TomlReader& root);  // [environment]
 
 }  // namespace quintet::scene
 #endif

@@ -63,7 +63,6 @@ void appendAnimation(NodeAnimation& all, Scene& part, std::size_t firstMaterial)
   NodeAnimation from = *part.nodeAnimation;
   const std::size_t nodes = all.nodes.size(), skins = all.skins.size(), samplers = all.animation.samplers.size();
   const std::size_t values = all.values.size();
-  all.framesPerSecond = from.framesPerSecond;
   for (AnimationNode& node : from.nodes) shift(node.parent, nodes);
   for (int& node : from.order) shift(node, nodes);
   for (Skin& skin : from.skins)
@@ -197,12 +196,6 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
 }
 
 }  // namespace
-
-void finishAnimation(SceneTomlContext& context) {
-  if (!context.animation.nodes.empty())
-    context.scene.nodeAnimation = std::make_shared<NodeAnimation>(std::move(context.animation));
-  if (!context.scene.materialStates.empty()) context.scene.materialStates.resize(context.scene.materials.size());
-}
 
 void readFiles(SceneTomlContext& context, TomlReader& root) {
   for (const TomlValue& table : root.tables("file")) readFile(context, table);

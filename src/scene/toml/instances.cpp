@@ -9,6 +9,7 @@
 #include "scene/animation/keyframes.h"
 #include "scene/geometry/repair.h"
 #include "scene/toml/context.h"
+#include "scene/toml/keyframes.h"
 #include "scene/toml/transform.h"
 
 namespace quintet::scene {
@@ -43,22 +44,30 @@ std::uint32_t readFlags(TomlReader& reader) {
 }
 
 // A missing key has its value from the keyframe before; in the first keyframe, from the instance (`start`).
-std::vector<Keyframe> readKeyframes(TomlReader& reader, const Keyframe& start) {
+std::vector<Keyframe> readKeyframes(KeyframeList& list, const Keyframe& start) {
   std::vector<Keyframe> keys;
-  for (const TomlValue& value : reader.list("keyframes")) {
-    TomlReader inner(value, fmt::format("keyframes[{}] of {}", keys.size(), reader.what()), reader.file());
-    Keyframe key = readParts(inner, keys.empty() ? start : keys.back());
-    key.frame = inner.toNumber(inner.require("frame"), "frame");
-    inner.rejectUnknownKeys();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    TomlReader& reader = list.table(i);
+    Keyframe key = readParts(reader, keys.empty() ? start : keys.back());
+    key.frame = list.frame(i);
     if (!keys.empty() && !(key.frame > keys.back().frame))
-      inner.fail(value, fmt::format("{}: frames must ascend", inner.what()));
-    checkInvertible(inner, value, matrixOf(key));
+      reader.fail(fmt::format("{} is too close to the keyframe before", reader.what()));
+    checkInvertible(reader, reader.table(), matrixOf(key));
     for (int axis = 0; axis < 3; ++axis)
       if (!keys.empty() && (key.scale[axis] > 0.0f) != (keys.front().scale[axis] > 0.0f))
-        inner.fail(value, fmt::format("{}: 'scale' changes its sign, so that it would pass through 0", inner.what()));
+        reader.fail(fmt::format("{}: 'scale' changes its sign, so that it would pass through 0", reader.what()));
     keys.push_back(key);
   }
   return keys;
+}
+
+// Reads the keyframes of an instance, and lists them in the report.
+void addKeyframes(SceneTomlContext& context, TomlReader& reader, KeyframeList& list, Instance& instance) {
+  instance.keyframes = readKeyframes(list, list.empty() ? Keyframe{} : readParts(reader));
+  instance.interpolation = {list.interpolationOf("translate"), list.interpolationOf("rotate"),
+                            list.interpolationOf("scale")};
+  list.rejectUnknownKeys();
+  addSummary(context, reader, list, {"translate", "rotate", "scale"});
 }
 
 InstanceTarget& findTarget(SceneTomlContext& context, TomlReader& reader) {
@@ -106,7 +115,7 @@ void addInstances(SceneTomlContext& context, const TomlReader& reader, const Ins
     instance.visibleNode = part.visibleNode;
     if (target.instances.size() > 1) instance.name += "/" + part.name;
     const bool keyed = !instance.keyframes.empty();
-    const mat4 start = keyed ? keyframeMatrixAt(instance.keyframes, 0.0f) : outer;
+    const mat4 start = keyed ? keyframeMatrixAt(instance.keyframes, 0.0f, instance.interpolation) : outer;
     instance.worldFromObject = start * inner * part.worldFromObject;
     if (part.node != kNone) {
       instance.animatedFromObject = part.animatedFromObject;
@@ -132,7 +141,8 @@ void readInstance(SceneTomlContext& context, const TomlValue& table) {
   const TomlValue* keyframes = reader.find("keyframes");
   if (keyframes && reader.has("matrix"))
     reader.fail(*keyframes, fmt::format("'matrix' and 'keyframes' of {} are mutually exclusive", reader.what()));
-  pattern.keyframes = readKeyframes(reader, keyframes ? readParts(reader) : Keyframe{});
+  KeyframeList list(reader, context.options.framesPerSecond);
+  addKeyframes(context, reader, list, pattern);
   PlacementOptions options;
   options.sizeKey = "scale";
   options.materials = false;

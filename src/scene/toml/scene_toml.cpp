@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory_budget.h"
+#include "scene/animation/pose.h"
 #include "scene/model/validate.h"
 #include "scene/toml/context.h"
 
@@ -26,6 +27,21 @@ void rejectGltfOptions(const std::filesystem::path& file, const LoadOptions& opt
   reject(options.scene, "scene", "scene");
 }
 
+// Of the glTF files and of keyframes. What has keyframes becomes that of frame 0.
+void finishAnimation(SceneTomlContext& context) {
+  Scene& scene = context.scene;
+  if (!scene.materialStates.empty()) scene.materialStates.resize(scene.materials.size());
+  if (context.animation.nodes.empty() && context.animation.values.empty()) return;
+  scene.nodeAnimation = std::make_shared<NodeAnimation>(std::move(context.animation));
+  if (scene.report.keyframes.empty()) return;
+  const Pose pose = poseAt(scene.nodeAnimation.get(), 0.0);
+  for (Light& light : scene.lights)
+    if (!light.values.empty() && light.node == kNone && light.visibleNode == kNone) light = lightAt(light, pose);
+  for (Camera& camera : scene.cameras)
+    if (!camera.values.empty() && camera.node == kNone) camera = cameraAt(camera, pose);
+  moveEnvironment(scene.environment, pose);
+}
+
 Scene read(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
   rejectGltfOptions(file, options);
   SceneTomlContext context(file, options);
@@ -39,7 +55,9 @@ Scene read(std::string_view text, const std::filesystem::path& file, const LoadO
   readMeshes(context, root);
   readPrimitives(context, root);
   readInstances(context, root);
-  readView(context, root);
+  readLights(context, root);
+  readCameras(context, root);
+  readEnvironment(context, root);
   root.rejectUnknownKeys();
   finishAnimation(context);
   makePrintable(context.scene.report);

@@ -60,9 +60,22 @@ base_color_texture = { image = "image.png", wrap = "clamp", filter = "nearest" }
 of = "part/triangle"
 material = "wood"
 keyframes = [{ frame = 0, translate = [0, 0, 0] }, { frame = 10, translate = [1, 2, 3], rotate = [0, 90, 0] }]
+[[light]]
+type = "spot"
+position = [0, 2, 0]
+target = [0, 0, 0]
+interpolation = { color = "step", intensity = "cubic" }
+keyframes = [{ time = 0 }, { time = 1, position = [1, 2, 0], color = [1, 0, 0], inner_angle = 20, outer_angle = 30 },
+  { time = 2, intensity = 3, in_tangent = { intensity = 2 } }]
+[[camera]]
+look_from = [0, 1, 4]
+look_at = [0, 0, 0]
+interpolation = "cubic"
+keyframes = [{ frame = 0, fov = 30, focus = 2 }, { frame = 24, look_from = [4, 1, 0], up = [0, 1, 1], aperture = 0.1 }]
 [environment]
 image = "image.png"
 intensity = 2
+keyframes = [{ time = 0 }, { time = 2, intensity = 0, rotation = 90 }]
 )";
   const auto bytes = std::as_bytes(std::span(kMore));
   corpora["scene"].push_back({"more.scene.toml", {bytes.begin(), bytes.end()}});

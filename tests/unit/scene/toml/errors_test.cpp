@@ -232,7 +232,7 @@ TEST(SceneTomlFuzz, LoadsMutatedScenesOrReportsAnError) {
   const std::filesystem::path folder = std::filesystem::path(QUINTET_SOURCE_ROOT) / "examples/scenes";
   std::mt19937 random(20261121);
   std::size_t loaded = 0, rejected = 0;
-  for (const char* name : {"csg.scene.toml", "spheres.scene.toml", "instances.scene.toml"}) {
+  for (const char* name : {"csg.scene.toml", "spheres.scene.toml", "instances.scene.toml", "moving.scene.toml"}) {
     const std::string original = readTextFile(folder / name);
     EXPECT_NO_THROW(scene::validate(scene::loadScene(folder / name))) << name;
     for (int i = 0; i < 400; ++i) {

@@ -104,6 +104,37 @@ translate = [5, 0, 0]
   EXPECT_NO_THROW(scene::validate(middle));
 }
 
+TEST_F(FileAnimation, PlaysWithKeyframesOfTheSceneFile) {
+  const scene::Scene scene = load(both_ + R"(
+[[light]]
+type = "point"
+position = [0, 0, 0]
+keyframes = [{ time = 0, intensity = 1 }, { time = 2, intensity = 5 }]
+[[camera]]
+look_from = [0, 0, 8]
+look_at = [0, 0, 0]
+keyframes = [{ time = 0 }, { time = 2, look_from = [0, 0, 4] }]
+)");
+  EXPECT_EQ(scene::lastFrame(scene), 48);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  const scene::Scene later = posed(scene, 18), triangle = posed(triangle_.loadAnimated(), 18);
+  EXPECT_EQ(later.lights[0].intensity, triangle.lights[0].intensity);
+  EXPECT_EQ(later.lights[0].position, triangle.lights[0].position);
+  EXPECT_NEAR(later.lights[1].intensity.x, 2.5f, 1e-6f);
+  EXPECT_NEAR(later.cameras[0].worldFromCamera[3].z, 6.5f, 1e-5f);
+  EXPECT_EQ(later.cameras[1].verticalFov, triangle.cameras[0].verticalFov);
+  EXPECT_EQ(later.materials.back().roughness, triangle.materials[0].roughness);
+  expectSame(later.instances[1].worldFromObject, triangle.instances[0].worldFromObject);
+  // Keyframes play although the animations do not.
+  const scene::Scene rest = load(
+      "[[file]]\nname = 't'\npath = 'triangle.glb'\n[[light]]\ntype = 'point'\n"
+      "position = [0, 0, 0]\nkeyframes = [{ time = 0, intensity = 0 }, { time = 1, intensity = 1 }]\n",
+      std::nullopt);
+  EXPECT_NEAR(posed(rest, 12).lights[1].intensity.x, 0.5f, 1e-6f);
+  expectSame(posed(rest, 12).instances[0].worldFromObject, rest.instances[0].worldFromObject);
+}
+
 TEST_F(FileAnimation, IsChosenPerFile) {
   const std::string file = "[[file]]\nname = 't'\npath = 'triangle.glb'\n";
   const auto heightAt = [&](const std::string& text) {
