@@ -7,6 +7,7 @@
 #include "rendered_image.h"
 #include "scene/animation/pose.h"
 #include "scene/gltf_animation.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::test {
 namespace {
@@ -25,6 +26,7 @@ scene::Scene posedByHost(scene::Scene scene, double frame) {
     light.node = light.visibleNode = scene::kNone;
     light.values.clear();
   }
+  scene.environment.values.clear();
   return scene;
 }
 
@@ -46,7 +48,9 @@ std::vector<vec4> renderView(render::DeviceScene& device, const View& view) {
 }
 
 std::vector<vec4> renderPosed(const scene::Scene& scene, double frame, const View& view) {
-  render::DeviceScene device(testContext(), posedByHost(scene, frame), scene::Environment{});
+  scene::Scene posed = posedByHost(scene, frame);
+  const scene::Environment environment = posed.environment;
+  render::DeviceScene device(testContext(), std::move(posed), environment);
   return renderView(device, view);
 }
 
@@ -63,7 +67,7 @@ bool hasImage(const std::vector<vec4>& pixels) {
 
 // Shows the frames one after the other on one device scene, and compares each with the host's pose.
 void expectHostPoses(const scene::Scene& scene, const std::vector<double>& frames, const View& view = {}) {
-  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene.environment);
   EXPECT_TRUE(device.animated());
   std::vector<vec4> before;
   for (const double frame : frames) {
@@ -185,6 +189,48 @@ TEST(Animation, PointersChangeMaterials) {
     EXPECT_TRUE(hasImage(shown));
     EXPECT_LT(largestDifference(shown, renderPosed(scene, frame, view)), 1e-3) << frame;
   }
+}
+
+// A lamp that is dark at frame 0 and a spot light that follows its target, over a floor.
+TEST(Animation, KeyframesMoveLightsOfSceneFiles) {
+  const scene::Scene scene = scene::parseSceneToml(R"([[mesh]]
+shape = "plane"
+size = 4
+[[light]]
+type = "point"
+position = [-1, 1, 0]
+intensity = 0
+keyframes = [{ time = 0 }, { time = 1, intensity = 8, color = [1, 0.5, 0] }]
+[[light]]
+type = "spot"
+position = [0, 2, 0]
+target = [-1, 0, 0]
+intensity = 9
+outer_angle = 20
+keyframes = [{ time = 0 }, { time = 1, target = [1, 0, 1], position = [0.5, 2, 0.5], inner_angle = 15 }]
+)",
+                                                   "lights.scene.toml");
+  const View view{.program = "pathtracer", .camera = perspective({0, 5, 0.1f}, {0, 0, 0}, 40), .set = {"bounces=1"}};
+  expectHostPoses(scene, {12, 24, 0}, view);
+}
+
+// An environment that is black at frame 0 and turns, over a floor and in the background.
+TEST(Animation, KeyframesMoveTheEnvironment) {
+  scene::Scene scene = scene::parseSceneToml(R"([[mesh]]
+shape = "plane"
+size = 4
+[environment]
+color = [1, 1, 1]
+keyframes = [{ time = 0, intensity = 0 }, { time = 0.5, intensity = 2, rotation = 40 }, { time = 1, rotation = 150 }]
+)",
+                                             "sky.scene.toml");
+  const View view{.program = "pathtracer", .camera = perspective({0, 2, 4}, {0, 0, 0}, 60), .set = {"bounces=1"}};
+  expectHostPoses(scene, {6, 12}, view);
+  // An image, which is lit on one side.
+  scene.environment.image = io::makeImage(8, 4, 3, io::PixelType::f32, io::ColorEncoding::linear);
+  for (std::uint32_t y = 0; y < 4; ++y)
+    for (std::uint32_t x = 0; x < 3; ++x) std::ranges::fill(scene.environment.image.pixel<float>(x, y), 4.0f);
+  expectHostPoses(scene, {6, 12, 24}, view);
 }
 
 TEST(Animation, PointersChangeLightsAndVisibility) {

@@ -11,6 +11,7 @@
 #include "rendered_image.h"
 #include "scene/animation/pose.h"
 #include "scene/gltf_animation.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::test {
 namespace {
@@ -43,7 +44,11 @@ scene::Scene stillAt(scene::Scene scene, double frame) {
   scene::applyPose(scene, scene::poseAt(scene.nodeAnimation.get(), frame));
   scene.nodeAnimation = nullptr;
   for (scene::Mesh& mesh : scene.meshes) mesh.deformation = nullptr;
-  for (scene::Light& light : scene.lights) light.node = scene::kNone;
+  for (scene::Light& light : scene.lights) {
+    light.node = scene::kNone;
+    light.values.clear();
+  }
+  scene.environment.values.clear();
   for (scene::Instance& instance : scene.instances) {
     instance.node = scene::kNone;
     instance.keyframes.clear();
@@ -71,7 +76,7 @@ void addSamples(std::vector<vec4>& sums, const std::vector<vec4>& values) {
 
 // The first two batches of the scene with a shutter, against samples of still scenes.
 void expectSamplesOfStillScenes(const scene::Scene& scene, const ShutterInterval& shutter, const Shot& shot = {}) {
-  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene.environment);
   render::Renderer blurred = makeShot(device, shot, shutter);
   std::vector<vec4> before;
   for (std::uint32_t batch = 0; batch < 2; ++batch) {
@@ -81,7 +86,9 @@ void expectSamplesOfStillScenes(const scene::Scene& scene, const ShutterInterval
     for (std::uint32_t s = 0; s < kBatchSamples; ++s) {
       const std::uint32_t sample = batch * kBatchSamples + s;
       const double frame = render::sampleTime(shutter, sample, blurred.settings().seed);
-      render::DeviceScene still(testContext(), stillAt(scene, frame), scene::Environment{});
+      scene::Scene stillScene = stillAt(scene, frame);
+      const scene::Environment environment = stillScene.environment;
+      render::DeviceScene still(testContext(), std::move(stillScene), environment);
       render::Renderer renderer = makeShot(still, shot);
       renderer.renderSample(sample);
       const std::vector<vec4> values = renderer.film().downloadBatch(0);
@@ -152,6 +159,29 @@ TEST(MotionBlur, LightsFollowTheirNodes) {
             .set = {"bounces=1"},
             .outputs = {}};
   expectSamplesOfStillScenes(builder.loadAnimated(), {0, 24}, shot);
+}
+
+// A spot light that follows its target, and an environment that fades in.
+TEST(MotionBlur, KeyframesMoveLightsOfSceneFiles) {
+  const scene::Scene scene = scene::parseSceneToml(R"([[mesh]]
+shape = "plane"
+size = 4
+[[light]]
+type = "spot"
+position = [0, 2, 0]
+target = [-1, 0, 0]
+intensity = 40
+outer_angle = 25
+interpolation = "cubic"
+keyframes = [{ frame = 0 }, { frame = 4, target = [1, 0, 1], color = [1, 0.2, 0] }]
+[environment]
+color = [1, 1, 1]
+keyframes = [{ frame = 0, intensity = 0 }, { frame = 4, intensity = 2 }]
+)",
+                                                   "lights.scene.toml");
+  const Shot shot{
+      .program = "pathtracer", .camera = perspective({0, 5, 0.1f}, {0, 0, 0}, 40), .set = {"bounces=1"}, .outputs = {}};
+  expectSamplesOfStillScenes(scene, {0, 4}, shot);
 }
 
 // The camera turns by 90° per frame. Each batch is the sum of the samples of four cameras, bit for bit.

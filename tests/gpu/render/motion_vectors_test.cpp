@@ -13,6 +13,7 @@
 #include "rendered_image.h"
 #include "scene/animation/pose.h"
 #include "scene/gltf_animation.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::test {
 namespace {
@@ -147,6 +148,28 @@ TEST(MotionVectors, ContainTheMotionOfTheCamera) {
     MotionShot shot(scene, camera);
     EXPECT_GT(expectHostMotion(shot.at(8), scene, camera, 8), 0.05f);
   }
+}
+
+// A camera with keyframes in a scene file moves as cameras that are computed for each frame.
+TEST(MotionVectors, ContainTheMotionOfKeyframes) {
+  const scene::Scene scene = scene::parseSceneToml(R"([[mesh]]
+shape = "quad"
+size = 2
+[[camera]]
+look_from = [0, 1, 4]
+look_at = [0, 0, 0]
+fov = 45
+keyframes = [{ frame = 0 }, { frame = 10, look_from = [1, 1, 4], look_at = [0.5, 0.2, 0], fov = 35 }]
+)",
+                                                   "camera.scene.toml");
+  const MovingCamera expected = [](double frame) {
+    const auto t = static_cast<float>(frame / 10);
+    return perspective({t, 1, 4}, {0.5f * t, 0.2f * t, 0}, 45 - 10 * t);
+  };
+  MotionShot shot(scene, [&](double frame) {
+    return scene::cameraAt(scene.cameras[0], scene::poseAt(scene.nodeAnimation.get(), frame));
+  });
+  EXPECT_GT(expectHostMotion(shot.at(6), scene, expected, 6), 0.1f);
 }
 
 // With a shutter, motion is that of the middle of its interval, like the position.
