@@ -94,8 +94,8 @@ std::vector<std::byte> png(std::uint32_t width, std::uint32_t height, std::vecto
 }
 
 // A light with two levels: RGBD faces of 4 x 4 pixels, and LDR faces of 2 x 2.
-struct LightBuilder : GltfBuilder {
-  explicit LightBuilder(const std::vector<std::byte>& face = png(4, 4, {255, 188, 0, 51})) {
+struct ImageBasedLightBuilder : GltfBuilder {
+  explicit ImageBasedLightBuilder(const std::vector<std::byte>& face = png(4, 4, {255, 188, 0, 51})) {
     addTriangle();
     add("images", {{"bufferView", addView(face)}});
     add("images", {{"bufferView", addView(png(2, 2, {10, 20, 30}))}});
@@ -111,7 +111,7 @@ struct LightBuilder : GltfBuilder {
 
 // 188 is 0.503 in linear light; the alpha 51/255 multiplies by 5.
 TEST(ImageBasedLight, BecomesTheEnvironment) {
-  LightBuilder builder;
+  ImageBasedLightBuilder builder;
   builder.root["extensionsRequired"] = {"EXT_lights_image_based"};
   const scene::Scene scene = builder.load();
   const scene::Environment& e = scene.environment;
@@ -131,13 +131,14 @@ TEST(ImageBasedLight, BecomesTheEnvironment) {
 }
 
 TEST(ImageBasedLight, AcceptsImagesWithoutAlpha) {
-  EXPECT_LT(glm::distance(radianceTo(LightBuilder(png(2, 2, {255, 188, 0})).load().environment.image, {1, 0, 0}),
-                          vec3(1.0f, 0.5029f, 0.0f)),
-            1e-3f);
+  EXPECT_LT(
+      glm::distance(radianceTo(ImageBasedLightBuilder(png(2, 2, {255, 188, 0})).load().environment.image, {1, 0, 0}),
+                    vec3(1.0f, 0.5029f, 0.0f)),
+      1e-3f);
 }
 
 TEST(ImageBasedLight, IsNotUsedByOtherScenes) {
-  LightBuilder builder;
+  ImageBasedLightBuilder builder;
   builder.root["scenes"][0].erase("extensions");
   const scene::Scene scene = builder.load();
   EXPECT_FALSE(scene.environment.present);
@@ -145,7 +146,7 @@ TEST(ImageBasedLight, IsNotUsedByOtherScenes) {
 }
 
 TEST(ImageBasedLight, RepairsItsValues) {
-  LightBuilder builder;
+  ImageBasedLightBuilder builder;
   builder.light()["intensity"] = -1;
   builder.light()["rotation"] = {0, 0, 0, 0};
   const scene::Scene scene = builder.load();
@@ -154,9 +155,9 @@ TEST(ImageBasedLight, RepairsItsValues) {
 }
 
 TEST(ImageBasedLight, NamesTheLocationOfErrors) {
-  EXPECT_THAT(errorOf(LightBuilder(png(4, 2, {1, 2, 3}))),
+  EXPECT_THAT(errorOf(ImageBasedLightBuilder(png(4, 2, {1, 2, 3}))),
               IsErrorAt("/extensions/EXT_lights_image_based/lights/0/specularImages/0/0", "4 x 2 pixels"));
-  LightBuilder builder;
+  ImageBasedLightBuilder builder;
   builder.light()["specularImages"][0][5] = 1;
   EXPECT_THAT(errorOf(builder),
               IsErrorAt("/extensions/EXT_lights_image_based/lights/0/specularImages/0/5", "same size"));
@@ -170,7 +171,7 @@ TEST(ImageBasedLight, NamesTheLocationOfErrors) {
 }
 
 TEST(ImageBasedLight, IsOmittedWithMissingImages) {
-  LightBuilder builder;
+  ImageBasedLightBuilder builder;
   builder.root["images"][0] = {{"uri", "none.png"}};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0/uri", "none.png"));
   const TempFolder folder;
@@ -184,7 +185,7 @@ TEST(ImageBasedLight, IsOmittedWithMissingImages) {
 // Of a scene file, if it has no [environment].
 TEST(ImageBasedLight, LightsSceneFiles) {
   const TempFolder folder;
-  writeFile(folder / "a.glb", LightBuilder().glb());
+  writeFile(folder / "a.glb", ImageBasedLightBuilder().glb());
   const auto load = [&](const std::string& text) {
     writeFile(folder / "a.scene.toml", std::as_bytes(std::span(text)));
     return scene::loadScene(folder / "a.scene.toml").environment;
