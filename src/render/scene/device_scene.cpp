@@ -163,7 +163,10 @@ void DeviceScene::moveEnvironment(const scene::Pose& pose) {
   scene::Environment& environment = animatedEnvironment_->environment;
   scene::moveEnvironment(environment, pose);
   setScaleAndRotation(frame_.environment, environment, environment.constant);
-  const double integral = animatedEnvironment_->unscaledIntegral * environment.intensity;
+  setEnvironmentIntegral(animatedEnvironment_->unscaledIntegral * environment.intensity);
+}
+
+void DeviceScene::setEnvironmentIntegral(double integral) {
   if (integral == lightBuilder_->environmentIntegral()) return;  // it has only turned
   lightBuilder_->setEnvironment(integral);
   lightsOutdated_ = true;
@@ -428,10 +431,7 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
     moveEnvironment(scene::poseAt(nodeAnimation_.get(), shownFrame_));
     return true;
   }
-  const double integral = table.width > 0 ? table.integral : 0.0;
-  if (integral == lightBuilder_->environmentIntegral()) return true;  // it has only turned
-  lightBuilder_->setEnvironment(integral);
-  lightsOutdated_ = true;
+  setEnvironmentIntegral(table.width > 0 ? table.integral : 0.0);
   return true;
 }
 
