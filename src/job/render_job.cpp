@@ -298,11 +298,15 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
   request.outputs = with.outputs;
   request.parameterFile = with.parameterFile;
   request.assignments = with.assignments;
+  std::optional<ShutterRequest> suspended;
+  if (!request.shutter) request.shutter = suspendedShutter_;
+  if (program.accumulation == program::Accumulation::program) suspended = std::exchange(request.shutter, std::nullopt);
   ResolvedJob changed = resolve(std::move(request), std::move(program));
   changed.scene = job_.scene;
   frameOutdated_ = true;  // a program that accumulates has moved the scene to a frame of its own
   if (!renderer_) {       // update() failed and is repeated by the next run()
     job_ = std::move(changed);
+    suspendedShutter_ = suspended;
     return;
   }
   observer.stage("compiling shaders");
@@ -316,6 +320,10 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
     std::swap(job_, changed);
     throw;
   }
+  if (suspended && !suspendedShutter_)
+    observer.note(
+        fmt::format("{}: without motion blur, because the program averages its frames itself", job_.program.name));
+  suspendedShutter_ = suspended;
   // Its any-hit shaders may need other acceleration structures.
   sceneOutdated_ = sceneOutdated_ || scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program);
   restart();

@@ -108,7 +108,7 @@ class RenderJob {
   // RenderRequest::limits.samples and frames.accumulated, for which the samples are distributed.
   void setPlannedSamples(std::uint32_t count);
   // Compiles the program, which can be the same with changed shaders. Throws ProgramError, too, and then the old one
-  // stays.
+  // stays. A program that accumulates has no motion blur: RenderRequest::shutter is unset until another program follows.
   void setProgram(program::Program program, const ProgramRequest& with, Observer& observer);
   // Replaces RenderRequest::print. Its pixels need not be inside the image, whose size can change. Compiles the program.
   void setPrint(std::optional<PrintRequest> print, Observer& observer);
@@ -226,10 +226,11 @@ class RenderJob {
   bool lightsOutdated_ = false;
   bool environmentOutdated_ = false;
   mutable bool provenanceOutdated_ = false;
-  mutable bool sceneEdited_ = false;        // since the hash of the scene was computed
-  mutable bool environmentEdited_ = false;  // since the hash of the environment was computed
-  double frame_ = 0;                        // of an animated scene
-  bool frameOutdated_ = false;              // the device does not show frame_ yet
+  mutable bool sceneEdited_ = false;                // since the hash of the scene was computed
+  mutable bool environmentEdited_ = false;          // since the hash of the environment was computed
+  double frame_ = 0;                                // of an animated scene
+  bool frameOutdated_ = false;                      // the device does not show frame_ yet
+  std::optional<ShutterRequest> suspendedShutter_;  // while a program that accumulates is shown
   std::uint64_t linkCount_ = 0;
   double linkedSeconds_ = 0;      // on clock_
   double firstPixelSeconds_ = 0;  // on clock_; 0: no launch has ended

@@ -395,6 +395,28 @@ TEST_F(SessionTest, AProgramThatAccumulatesLeavesTheFrame) {
   EXPECT_TRUE(test::equalSums(sums(*session), reference(request())));
 }
 
+TEST_F(SessionTest, AProgramThatAccumulatesSuspendsTheShutter) {
+  writeFile(folder_ / "a.scene.toml",
+            replaced(kScene, "translate = [3.0, 0.0, 0.0]",
+                     "keyframes = [{ frame = 0 }, { frame = 8, translate = [4.0, 2.0, 0.5] }]"));
+  RenderRequest blurred = request();
+  blurred.shutter = ShutterRequest{0, 4};
+  const auto session = makeSession(blurred);
+  session->refine();
+  const std::vector<shared::FixedSum> before = sums(*session);
+  EXPECT_FALSE(test::equalSums(before, reference(request())));
+  session->apply(SetProgram{"lessons/09_progressive"});
+  session->refine();
+  EXPECT_EQ(session->program().accumulation, program::Accumulation::program);
+  session->apply(SetProgram{"pathtracer"});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), before)) << "the shutter is back";
+  session->apply(Undo{});
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), before));
+}
+
 TEST_F(SessionTest, PicksWhatIsVisible) {
   writeFile(folder_ / "a.scene.toml", litScene());  // several geometries, whose hit records depend on the ray types
   const auto session = makeSession(request());
