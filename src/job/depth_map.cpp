@@ -28,4 +28,9 @@ DepthMap renderDepthMap(Engine& engine, render::DeviceScene& scene, const scene:
   return result;
 }
 
+DepthMap renderDepthMap(Engine& engine, RenderJob& job) {
+  job.showCurrentFrame();  // with a shutter, the scene is that of the last sample
+  return renderDepthMap(engine, *job.scene()->onDevice, job.camera(), job.scene()->size, job.resolved().program);
+}
+
 }  // namespace quintet::job

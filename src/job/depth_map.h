@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "job/engine.h"
+#include "job/render_job.h"
 #include "program/description/program.h"
 #include "render/scene/device_scene.h"
 #include "scene/model/scene.h"
@@ -23,6 +24,10 @@ struct DepthMap {
 // a program knows have the depth of the box. Blocks. Throws ProgramError, gpu errors and TimeoutError.
 DepthMap renderDepthMap(Engine& engine, render::DeviceScene& scene, const scene::Camera& camera, uvec2 size,
                         const program::Program& shown);
+
+// Of the image of a job that has rendered: at its frame; with a shutter, in the middle of its interval, where the camera of
+// the job is.
+DepthMap renderDepthMap(Engine& engine, RenderJob& job);
 
 }  // namespace quintet::job
 #endif

@@ -186,8 +186,7 @@ void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
   viewer::requireSceneCamera(explanation, job.camera());
   setWorkStage("rendering");
   const job::RenderResult result = renderImage(job, explanation, options, console);
-  const job::DepthMap depth =
-      job::renderDepthMap(engine, *job.scene()->onDevice, job.camera(), job.scene()->size, job.resolved().program);
+  const job::DepthMap depth = job::renderDepthMap(engine, job);
   const io::Image image = viewer::drawRays(engine.context(), explanation, depth,
                                            output::displayImage(plan, *result.film), job::EngineOptions().caches);
   console.clear();

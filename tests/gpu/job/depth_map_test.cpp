@@ -82,6 +82,28 @@ TEST_F(DepthMapTest, SupportsOrthographicCamerasAndLenses) {
   EXPECT_NEAR(at(lens, 10, 13), 4.0f, 1e-4f);
 }
 
+// The samples of a blurred image leave the scene at other times.
+TEST_F(DepthMapTest, ShowsTheMiddleOfTheShutter) {
+  std::string text = kScene;
+  text.replace(text.rfind("[[camera]]"), 0,
+               "keyframes = [{ frame = 0, translate = [0, 0, -1] }, { frame = 10, translate = [0, 0, 0] }]\n");
+  text += "keyframes = [{ frame = 0 }, { frame = 10, look_from = [0, 0, 6] }]\n";
+  writeFile(folder_ / "walls.scene.toml", text);
+  RenderRequest request;
+  request.scene = folder_ / "walls.scene.toml";
+  request.size = kSize;
+  request.limits.samples = 3;
+  request.shutter = ShutterRequest{0, 10};
+  Observer observer;
+  Engine engine({.caches = {}});
+  RenderJob job(engine, resolve(request, program::loadProgram("normals")), observer);
+  job.run(request.limits, observer);
+  const DepthMap map = renderDepthMap(engine, job);
+  EXPECT_NEAR(map.camera.worldFromCamera[3].z, 5.0f, 1e-4f);
+  EXPECT_NEAR(at(map, 17, 6), 3.5f, 1e-4f) << "the plate at z = 1.5";
+  EXPECT_NEAR(at(map, 13, 11), 5.0f, 1e-4f) << "the wall";
+}
+
 // The scene is prepared for a program with one ray type.
 TEST_F(DepthMapTest, FitsTheSceneOfEveryProgram) { EXPECT_NEAR(at(depthOf("lessons/04_diffuse"), 17, 6), 2.0f, 1e-4f); }
 
