@@ -163,10 +163,10 @@ void DeviceScene::moveEnvironment(const scene::Pose& pose) {
   scene::Environment& environment = animatedEnvironment_->environment;
   scene::moveEnvironment(environment, pose);
   setScaleAndRotation(frame_.environment, environment, environment.constant);
-  setEnvironmentIntegral(animatedEnvironment_->unscaledIntegral * environment.intensity);
+  setEnvironmentPower(animatedEnvironment_->unscaledIntegral * environment.intensity);
 }
 
-void DeviceScene::setEnvironmentIntegral(double integral) {
+void DeviceScene::setEnvironmentPower(double integral) {
   if (integral == lightBuilder_->environmentIntegral()) return;  // it has only turned
   lightBuilder_->setEnvironment(integral);
   lightsOutdated_ = true;
@@ -427,11 +427,10 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
     table.integral = table.unscaledIntegral * environment.intensity;
   }
   showEnvironment(environment, table);
-  if (animatedEnvironment_) {
+  if (animatedEnvironment_)
     moveEnvironment(scene::poseAt(nodeAnimation_.get(), shownFrame_));
-    return true;
-  }
-  setEnvironmentIntegral(table.width > 0 ? table.integral : 0.0);
+  else
+    setEnvironmentPower(table.width > 0 ? table.integral : 0.0);
   return true;
 }
 

@@ -139,8 +139,7 @@ class DeviceScene {
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
   void moveEnvironment(const scene::Pose& pose);
-  // The light tree is rebuilt if the power of the environment has changed.
-  void setEnvironmentIntegral(double integral);
+  void setEnvironmentPower(double integral);  // in the builder
   void showFrame(double frame, bool withPrevious);
   void showDeformation(const scene::Pose& pose);
   void movePunctualLights(const scene::Pose& pose);  // in the builder

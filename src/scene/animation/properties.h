@@ -25,8 +25,9 @@ std::optional<PropertyInfo> findMaterialProperty(std::string_view pointer);
 std::optional<PropertyInfo> findLightProperty(std::string_view pointer);
 std::optional<PropertyInfo> findCameraProperty(std::string_view pointer);
 
-// The property that a key of [[light]], [[camera]] or [environment] in a scene file sets: "outer_angle". Angles are in
-// radians.
+// The property that a key of [[material]], [[light]], [[camera]] or [environment] in a scene file sets: "outer_angle".
+// Angles are in radians.
+std::optional<PropertyInfo> findMaterialKey(std::string_view key);
 std::optional<PropertyInfo> findLightKey(std::string_view key);
 std::optional<PropertyInfo> findCameraKey(std::string_view key);
 std::optional<PropertyInfo> findEnvironmentKey(std::string_view key);

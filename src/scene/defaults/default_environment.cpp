@@ -52,9 +52,15 @@ Environment defaultEnvironment() {
 
 namespace {
 
+bool emits(const Material& material) { return glm::any(glm::greaterThan(material.emissive, vec3(0.0f))); }
+
+// At any time of the animation.
 bool emits(const Scene& scene, int material) {
-  return material != kNone &&
-         glm::any(glm::greaterThan(scene.materials[static_cast<std::size_t>(material)].emissive, vec3(0.0f)));
+  if (material == kNone) return false;
+  const auto m = static_cast<std::size_t>(material);
+  if (emits(scene.materials[m])) return true;
+  return m < scene.materialStates.size() &&
+         std::ranges::any_of(scene.materialStates[m], [](const Material& state) { return emits(state); });
 }
 
 bool emits(const Scene& scene, const Mesh& mesh) {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// [[material]]: all members of scene::Material, with textures. The keys are the names of the members in snake_case.
+// [[material]]: all members of scene::Material, with textures and keyframes. The keys are the names of the members in
+// snake_case.
 #include <fmt/format.h>
+
+#include <utility>
 
 #include "base/error.h"
 #include "scene/toml/context.h"
+#include "scene/toml/keyframes.h"
 
 namespace quintet::scene {
 namespace {
@@ -81,6 +85,13 @@ class TextureReader {
   std::map<std::string, int> images_;
 };
 
+// The keys that keyframes can change.
+struct MaterialKeys {
+  Material values;  // without the emission
+  vec3 emissive{0.0f};
+  float emissiveStrength = 1.0f;
+};
+
 void readBaseColor(TomlReader& reader, Material& m) {
   const TomlValue* value = reader.find("base_color");
   if (value && value->kind == TomlValue::Kind::array && value->elements.size() == 4) {
@@ -92,64 +103,147 @@ void readBaseColor(TomlReader& reader, Material& m) {
   m.baseColor.a = reader.number("alpha", m.baseColor.a, kUnit);
 }
 
-void readEmission(TomlReader& reader, TextureReader& texture, Material& m) {
-  m.emissive =
-      readColor(reader, "emissive", m.emissive, kNotNegative) * reader.number("emissive_strength", 1.0f, kNotNegative);
-  if (!isFinite(m.emissive)) reader.fail(reader.table(), fmt::format("the emission of {} is too large", reader.what()));
-  m.emissiveTexture = texture(reader, "emissive_texture", m.emissiveTexture);
+void readEmission(TomlReader& reader, MaterialKeys& keys) {
+  keys.emissive = readColor(reader, "emissive", keys.emissive, kNotNegative);
+  keys.emissiveStrength = reader.number("emissive_strength", keys.emissiveStrength, kNotNegative);
+  if (!isFinite(keys.emissive * keys.emissiveStrength))
+    reader.fail(fmt::format("the emission of {} is too large", reader.what()));
 }
 
 // Transmission and the volume inside.
-void readTransmission(TomlReader& reader, TextureReader& texture, Material& m) {
+void readTransmission(TomlReader& reader, Material& m) {
   m.ior = reader.number("ior", m.ior, kAtLeastOne);
   m.transmission = reader.number("transmission", m.transmission, kUnit);
-  m.transmissionTexture = texture(reader, "transmission_texture", m.transmissionTexture);
   m.diffuseTransmission = reader.number("diffuse_transmission", m.diffuseTransmission, kUnit);
-  m.diffuseTransmissionTexture = texture(reader, "diffuse_transmission_texture", m.diffuseTransmissionTexture);
   m.diffuseTransmissionColor = readColor(reader, "diffuse_transmission_color", m.diffuseTransmissionColor, kUnit);
-  m.diffuseTransmissionColorTexture =
-      texture(reader, "diffuse_transmission_color_texture", m.diffuseTransmissionColorTexture);
   m.thickness = reader.number("thickness", m.thickness, kNotNegative);
   m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);
   m.dispersion = reader.number("dispersion", m.dispersion, kNotNegative);
   m.multiscatterColor = readColor(reader, "multiscatter_color", m.multiscatterColor, kUnit);
   m.scatterAnisotropy = reader.number("scatter_anisotropy", m.scatterAnisotropy, {-1.0, 1.0, true, true});
-  m.dielectricPriority = reader.number("dielectric_priority", m.dielectricPriority);
 }
 
-void readLayers(TomlReader& reader, TextureReader& texture, Material& m) {
+void readLayers(TomlReader& reader, Material& m) {
   m.specular = reader.number("specular", m.specular, kUnit);
-  m.specularTexture = texture(reader, "specular_texture", m.specularTexture);
   m.specularColor = readColor(reader, "specular_color", m.specularColor, kNotNegative);
-  m.specularColorTexture = texture(reader, "specular_color_texture", m.specularColorTexture);
   m.clearcoat = reader.number("clearcoat", m.clearcoat, kUnit);
-  m.clearcoatTexture = texture(reader, "clearcoat_texture", m.clearcoatTexture);
   m.clearcoatRoughness = reader.number("clearcoat_roughness", m.clearcoatRoughness, kUnit);
-  m.clearcoatRoughnessTexture = texture(reader, "clearcoat_roughness_texture", m.clearcoatRoughnessTexture);
-  m.clearcoatNormalTexture = texture(reader, "clearcoat_normal_texture", m.clearcoatNormalTexture);
   m.clearcoatNormalScale = reader.number("clearcoat_normal_scale", m.clearcoatNormalScale);
   m.sheenColor = readColor(reader, "sheen_color", m.sheenColor, kUnit);
-  m.sheenColorTexture = texture(reader, "sheen_color_texture", m.sheenColorTexture);
   m.sheenRoughness = reader.number("sheen_roughness", m.sheenRoughness, kUnit);
-  m.sheenRoughnessTexture = texture(reader, "sheen_roughness_texture", m.sheenRoughnessTexture);
-}
-
-void readAnisotropy(TomlReader& reader, TextureReader& texture, Material& m) {
   m.anisotropy = reader.number("anisotropy", m.anisotropy, kUnit);
   m.anisotropyRotation = glm::radians(reader.number("anisotropy_rotation", glm::degrees(m.anisotropyRotation)));
-  m.anisotropyTexture = texture(reader, "anisotropy_texture", m.anisotropyTexture);
-}
-
-void readIridescence(TomlReader& reader, TextureReader& texture, Material& m) {
   m.iridescence = reader.number("iridescence", m.iridescence, kUnit);
-  m.iridescenceTexture = texture(reader, "iridescence_texture", m.iridescenceTexture);
   m.iridescenceIor = reader.number("iridescence_ior", m.iridescenceIor, kAtLeastOne);
   m.iridescenceThicknessMinimum =
       reader.number("iridescence_thickness_minimum", m.iridescenceThicknessMinimum, kNotNegative);
   m.iridescenceThicknessMaximum =
       reader.number("iridescence_thickness_maximum", m.iridescenceThicknessMaximum, kNotNegative);
-  m.iridescenceThicknessTexture = texture(reader, "iridescence_thickness_texture", m.iridescenceThicknessTexture);
+}
+
+// Reads the keys of a material or of one of its keyframes. Missing ones keep their values.
+MaterialKeys readKeys(TomlReader& reader, MaterialKeys keys) {
+  Material& m = keys.values;
+  readBaseColor(reader, m);
+  m.metallic = reader.number("metallic", m.metallic, kUnit);
+  m.roughness = reader.number("roughness", m.roughness, kUnit);
+  m.normalScale = reader.number("normal_scale", m.normalScale);
+  m.alphaCutoff = reader.number("alpha_cutoff", m.alphaCutoff, kNotNegative);
+  readEmission(reader, keys);
+  readTransmission(reader, m);
+  readLayers(reader, m);
+  return keys;
+}
+
+// The keys that do not change with the time, except textures.
+void readModes(TomlReader& reader, Material& m) {
+  m.occlusionStrength = reader.number("occlusion_strength", m.occlusionStrength, kUnit);
+  m.alphaMode = static_cast<AlphaMode>(
+      reader.choice("alpha_mode", {"opaque", "mask", "blend"}, static_cast<std::size_t>(m.alphaMode)));
+  m.doubleSided = reader.boolean("double_sided", m.doubleSided);
+  m.unlit = reader.boolean("unlit", m.unlit);
+  m.dielectricPriority = reader.number("dielectric_priority", m.dielectricPriority);
+}
+
+void readTextures(TomlReader& reader, TextureReader& texture, Material& m) {
+  constexpr std::pair<const char*, TextureUse Material::*> kKeys[] = {
+      {"base_color_texture", &Material::baseColorTexture},
+      {"metallic_roughness_texture", &Material::metallicRoughnessTexture},
+      {"normal_texture", &Material::normalTexture},
+      {"occlusion_texture", &Material::occlusionTexture},
+      {"emissive_texture", &Material::emissiveTexture},
+      {"transmission_texture", &Material::transmissionTexture},
+      {"diffuse_transmission_texture", &Material::diffuseTransmissionTexture},
+      {"diffuse_transmission_color_texture", &Material::diffuseTransmissionColorTexture},
+      {"specular_texture", &Material::specularTexture},
+      {"specular_color_texture", &Material::specularColorTexture},
+      {"clearcoat_texture", &Material::clearcoatTexture},
+      {"clearcoat_roughness_texture", &Material::clearcoatRoughnessTexture},
+      {"clearcoat_normal_texture", &Material::clearcoatNormalTexture},
+      {"sheen_color_texture", &Material::sheenColorTexture},
+      {"sheen_roughness_texture", &Material::sheenRoughnessTexture},
+      {"anisotropy_texture", &Material::anisotropyTexture},
+      {"iridescence_texture", &Material::iridescenceTexture},
+      {"iridescence_thickness_texture", &Material::iridescenceThicknessTexture},
+  };
+  for (const auto& [key, use] : kKeys) m.*use = texture(reader, key, m.*use);
+}
+
+std::vector<KeyTrack> tracksOf(const std::vector<MaterialKeys>& states) {
+  constexpr std::pair<const char*, float Material::*> kNumbers[] = {
+      {"metallic", &Material::metallic},
+      {"roughness", &Material::roughness},
+      {"normal_scale", &Material::normalScale},
+      {"alpha_cutoff", &Material::alphaCutoff},
+      {"ior", &Material::ior},
+      {"transmission", &Material::transmission},
+      {"diffuse_transmission", &Material::diffuseTransmission},
+      {"thickness", &Material::thickness},
+      {"attenuation_distance", &Material::attenuationDistance},
+      {"dispersion", &Material::dispersion},
+      {"scatter_anisotropy", &Material::scatterAnisotropy},
+      {"specular", &Material::specular},
+      {"clearcoat", &Material::clearcoat},
+      {"clearcoat_roughness", &Material::clearcoatRoughness},
+      {"clearcoat_normal_scale", &Material::clearcoatNormalScale},
+      {"sheen_roughness", &Material::sheenRoughness},
+      {"anisotropy", &Material::anisotropy},
+      {"iridescence", &Material::iridescence},
+      {"iridescence_ior", &Material::iridescenceIor},
+      {"iridescence_thickness_minimum", &Material::iridescenceThicknessMinimum},
+      {"iridescence_thickness_maximum", &Material::iridescenceThicknessMaximum},
+  };
+  constexpr std::pair<const char*, vec3 Material::*> kColors[] = {
+      {"diffuse_transmission_color", &Material::diffuseTransmissionColor},
+      {"attenuation_color", &Material::attenuationColor},
+      {"multiscatter_color", &Material::multiscatterColor},
+      {"specular_color", &Material::specularColor},
+      {"sheen_color", &Material::sheenColor},
+  };
+  constexpr int kEmission = 1;  // the scene has the product of color and strength
+  std::vector<KeyTrack> tracks;
+  const auto add = [&](const char* key, auto value, int group = 0, float unit = 1.0f) {
+    KeyTrack& track = tracks.emplace_back(KeyTrack{.key = key, .property = *findMaterialKey(key)});
+    for (const MaterialKeys& keys : states) track.values.push_back(value(keys));
+    track.group = group;
+    track.unit = unit;
+  };
+  add("base_color", [](const MaterialKeys& k) { return vec4(vec3(k.values.baseColor), 0.0f); });
+  add("alpha", [](const MaterialKeys& k) { return vec4(k.values.baseColor.a, vec3(0.0f)); });
+  add(
+      "emissive", [](const MaterialKeys& k) { return vec4(k.emissive, 0.0f); }, kEmission);
+  add(
+      "emissive_strength", [](const MaterialKeys& k) { return vec4(k.emissiveStrength, vec3(0.0f)); }, kEmission);
+  add(
+      "anisotropy_rotation",
+      [](const MaterialKeys& k) { return vec4(glm::degrees(k.values.anisotropyRotation), vec3(0.0f)); }, 0,
+      glm::radians(1.0f));
+  for (const auto& [key, number] : kNumbers)
+    add(key, [number = number](const MaterialKeys& k) { return vec4(k.values.*number, vec3(0.0f)); });
+  for (const auto& [key, color] : kColors)
+    add(key, [color = color](const MaterialKeys& k) { return vec4(k.values.*color, 0.0f); });
+  return tracks;
 }
 
 void readMaterial(SceneTomlContext& context, TextureReader& texture, const TomlValue& table) {
@@ -157,33 +251,27 @@ void readMaterial(SceneTomlContext& context, TextureReader& texture, const TomlV
   const TomlValue& nameValue = reader.require("name");
   const std::string name = reader.toText(nameValue, "name");
   context.checkName(nameValue, name);
-  Material m;
-  m.metallic = 0.0f;
+  MaterialKeys start;
+  start.values.metallic = 0.0f;
   if (const TomlValue* like = reader.find("like"))
-    m = context.scene.materials[static_cast<std::size_t>(context.findMaterial(*like))];
+    start.values = context.scene.materials[static_cast<std::size_t>(context.findMaterial(*like))];
+  start.emissive = start.values.emissive;
+  const MaterialKeys keys = readKeys(reader, start);
+  Material m = keys.values;
   m.name = name;
-  readBaseColor(reader, m);
-  m.baseColorTexture = texture(reader, "base_color_texture", m.baseColorTexture);
-  m.metallic = reader.number("metallic", m.metallic, kUnit);
-  m.roughness = reader.number("roughness", m.roughness, kUnit);
-  m.metallicRoughnessTexture = texture(reader, "metallic_roughness_texture", m.metallicRoughnessTexture);
-  m.normalTexture = texture(reader, "normal_texture", m.normalTexture);
-  m.normalScale = reader.number("normal_scale", m.normalScale);
-  m.occlusionTexture = texture(reader, "occlusion_texture", m.occlusionTexture);
-  m.occlusionStrength = reader.number("occlusion_strength", m.occlusionStrength, kUnit);
-  readEmission(reader, texture, m);
-  m.alphaMode = static_cast<AlphaMode>(
-      reader.choice("alpha_mode", {"opaque", "mask", "blend"}, static_cast<std::size_t>(m.alphaMode)));
-  m.alphaCutoff = reader.number("alpha_cutoff", m.alphaCutoff, kNotNegative);
-  m.doubleSided = reader.boolean("double_sided", m.doubleSided);
-  m.unlit = reader.boolean("unlit", m.unlit);
-  readTransmission(reader, texture, m);
-  readLayers(reader, texture, m);
-  readAnisotropy(reader, texture, m);
-  readIridescence(reader, texture, m);
+  m.emissive = keys.emissive * keys.emissiveStrength;
+  readModes(reader, m);
+  readTextures(reader, texture, m);
+  KeyframeList list(reader, context.options.framesPerSecond);
   reader.rejectUnknownKeys();
-  if (!context.materials.emplace(name, static_cast<int>(context.scene.materials.size())).second)
+  const auto index = static_cast<int>(context.scene.materials.size());
+  if (!context.materials.emplace(name, index).second)
     context.fail(nameValue, fmt::format("second material '{}'", name));
+  std::vector<MaterialKeys> states;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    states.push_back(readKeys(list.table(i), i == 0 ? keys : states.back()));
+  std::vector<AnimatedValue> values = addTracks(context, reader, list, tracksOf(states));
+  if (!values.empty()) context.animation.materials.push_back({index, std::move(values)});
   context.scene.materials.push_back(std::move(m));
 }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory_budget.h"
+#include "scene/animation/material_states.h"
 #include "scene/animation/pose.h"
 #include "scene/model/validate.h"
 #include "scene/toml/context.h"
@@ -40,6 +41,13 @@ void finishAnimation(SceneTomlContext& context) {
   for (Camera& camera : scene.cameras)
     if (!camera.values.empty() && camera.node == kNone) camera = cameraAt(camera, pose);
   moveEnvironment(scene.environment, pose);
+  if (!scene.nodeAnimation->materials.empty()) scene.materialStates.resize(scene.materials.size());
+  for (const AnimatedMaterial& animated : scene.nodeAnimation->materials) {
+    const auto m = static_cast<std::size_t>(animated.material);
+    if (!scene.materialStates[m].empty()) continue;  // of a glTF file
+    scene.materialStates[m] = materialStates(scene.materials[m], animated.values, *scene.nodeAnimation);
+    scene.materials[m] = materialAt(scene.materials[m], animated.values, pose);
+  }
 }
 
 Scene read(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {

@@ -56,6 +56,7 @@ path = "part.gltf"
 name = "wood"
 base_color = "#804020"
 base_color_texture = { image = "image.png", wrap = "clamp", filter = "nearest" }
+keyframes = [{ time = 0, emissive = [1, 1, 1] }, { time = 1, emissive_strength = 5, transmission = 1, base_color = [1, 0, 0] }]
 [[instance]]
 of = "part/triangle"
 material = "wood"

@@ -214,6 +214,44 @@ keyframes = [{ time = 0 }, { time = 1, target = [1, 0, 1], position = [0.5, 2, 0
   expectHostPoses(scene, {12, 24, 0}, view);
 }
 
+// An area light that is off at frame 0, over a floor that changes its color.
+TEST(Animation, KeyframesChangeMaterialsOfSceneFiles) {
+  const scene::Scene scene = scene::parseSceneToml(R"([[material]]
+name = "floor"
+base_color = [1, 0, 0]
+keyframes = [{ time = 0 }, { time = 1, base_color = [0, 1, 0] }]
+[[material]]
+name = "lamp"
+base_color = [0, 0, 0]
+emissive = [1, 1, 1]
+keyframes = [{ time = 0, emissive_strength = 0 }, { time = 1, emissive_strength = 8 }]
+[[mesh]]
+shape = "plane"
+size = 4
+material = "floor"
+[[mesh]]
+shape = "plane"
+size = 1
+material = "lamp"
+translate = [0, 1, -1]
+rotate = [180, 0, 0]
+)",
+                                                   "lamp.scene.toml");
+  const View view{
+      .program = "pathtracer", .camera = perspective({0, 3, 5}, {0, 0, 0}, 40), .set = {"bounces=1"}, .batches = 2};
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  std::vector<vec4> before;
+  for (const double frame : {12.0, 24.0, 3.0}) {
+    device.setFrame(frame);
+    const std::vector<vec4> shown = renderView(device, view);
+    EXPECT_LT(largestDifference(shown, renderPosed(scene, frame, view)), 1e-3) << frame;
+    if (!before.empty()) {
+      EXPECT_GT(largestDifference(shown, before), 0.1) << frame;
+    }
+    before = shown;
+  }
+}
+
 // An environment that is black at frame 0 and turns, over a floor and in the background.
 TEST(Animation, KeyframesMoveTheEnvironment) {
   scene::Scene scene = scene::parseSceneToml(R"([[mesh]]

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "scene/animation/pose.h"
 #include "scene/defaults/auto_camera.h"
+#include "scene/defaults/default_environment.h"
 #include "scene/model/content_hash.h"
 #include "scene/toml/parse.h"
 
@@ -259,6 +260,48 @@ TEST(InstanceKeyframes, AreStepsOrSplines) {
   EXPECT_TRUE(least >= 0.5f && least < 0.6f) << least;
 }
 
+// ---- Materials ----
+
+TEST(MaterialKeyframes, ChangeFactorsAndEmission) {
+  const scene::Scene scene = parse(
+      "[[material]]\nname = 'm'\nbase_color = [1, 0, 0]\nalpha = 0.5\nemissive = [1, 0.5, 0]\n"
+      "interpolation = { roughness = 'step' }\n"
+      "keyframes = [{ time = 0, emissive_strength = 0, roughness = 0.2 },\n"
+      "{ time = 1, emissive_strength = 8, base_color = [0, 1, 0], roughness = 0.6, anisotropy_rotation = 90 },\n"
+      "{ time = 2, transmission = 1, attenuation_color = [0.5, 0.5, 1] }]\n"
+      "[[material]]\nname = 'still'\nlike = 'm'\n");
+  const auto at = [&](double seconds) {
+    const scene::AnimatedMaterial& animated = scene.nodeAnimation->materials.at(0);
+    return scene::materialAt(scene.materials[0], animated.values, poseOf(scene, seconds));
+  };
+  ASSERT_EQ(scene.nodeAnimation->materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].emissive, vec3(0.0f)) << "at frame 0";
+  expectNear(at(0.25).emissive, {2, 1, 0}, 1e-5f);
+  expectNear(vec3(at(0.25).baseColor), {0.75f, 0.25f, 0});
+  EXPECT_EQ(at(0.25).baseColor.a, 0.5f);
+  EXPECT_EQ(at(0.9).roughness, 0.2f);
+  EXPECT_EQ(at(1).roughness, 0.6f);
+  EXPECT_NEAR(glm::degrees(at(0.5).anisotropyRotation), 45, 1e-4f);
+  EXPECT_NEAR(at(1.5).transmission, 0.5f, 1e-6f);
+  expectNear(at(9).attenuationColor, {0.5f, 0.5f, 1});
+  EXPECT_EQ(scene.materials[1].emissive, vec3(1, 0.5f, 0)) << "a copy without keyframes";
+  // The states decide which shaders the scene needs.
+  ASSERT_EQ(scene.materialStates.size(), 2u);
+  const auto ever = [&](auto condition) { return std::ranges::any_of(scene.materialStates[0], condition); };
+  EXPECT_TRUE(ever([](const scene::Material& m) { return m.transmission > 0.0f; }));
+  EXPECT_TRUE(ever([](const scene::Material& m) { return m.emissive == vec3(8, 4, 0); }));
+  EXPECT_TRUE(scene.materialStates[1].empty());
+}
+
+// A lamp that is off at frame 0 still makes the environment black by default.
+TEST(MaterialKeyframes, LightTheSceneLater) {
+  const std::string lamp = "[[material]]\nname = 'lamp'\nemissive = [1, 1, 1]\nemissive_strength = 0\n";
+  const std::string quad = "[[mesh]]\nshape = 'quad'\nmaterial = 'lamp'\n";
+  EXPECT_FALSE(scene::hasEmitters(parse(lamp + quad)));
+  EXPECT_TRUE(
+      scene::hasEmitters(parse(lamp + "keyframes = [{ time = 0 }, { time = 1, emissive_strength = 5 }]\n" + quad)));
+}
+
 // ---- Documentation ----
 
 // The first TOML example of docs/scenes.md after "## Keyframes".
@@ -387,6 +430,13 @@ TEST(SceneKeyframes, ErrorsNameTheKeyAndTheLine) {
        {"keyframes = [{ time = 0, fov = 180 }]\n", 1, {"'fov' of keyframes[0]", "180"}},
        {"keyframes = [{ time = 0, focus = 0 }]\n", 1, {"'focus' of keyframes[0]"}},
        {"keyframes = [{ time = 0, orthographic = [1, 1] }]\n", 1, {"'orthographic'"}}});
+  expectErrors("[[material]]\nname = 'm'\n",
+               {{"keyframes = [{ time = 0, roughness = 2 }]\n", 1, {"'roughness' of keyframes[0] of [[material]] 'm'"}},
+                {"keyframes = [{ time = 0, unlit = true }]\n", 1, {"keyframes[0]", "'unlit'"}},
+                {"keyframes = [{ time = 0, base_color_texture = 'a.png' }]\n", 1, {"'base_color_texture'"}},
+                {"keyframes = [{ time = 0 },\n{ time = 1, attenuation_distance = 2 }]\n",
+                 1,
+                 {"'attenuation_distance'", "keyframes[0]"}}});
   expectErrors("[environment]\ncolor = [1, 1, 1]\n",
                {{"keyframes = [{ time = 0, intensity = -1 }]\n", 1, {"'intensity' of keyframes[0]", "[environment]"}},
                 {"keyframes = [{ time = 0, color = [0, 0, 0] }]\n", 1, {"keyframes[0]", "'color'"}}});
