@@ -292,6 +292,8 @@ bool ModuleReader::readType(const Instruction& instruction) {
     default: return true;
   }
   if (type.width > 64) return fail("number with more than 64 bits");
+  if ((type.kind == Kind::vector || type.kind == Kind::matrix) && (type.count < 2 || type.count > 4))
+    return fail(fmt::format("vector or matrix with {} components", type.count));  // shaders have 2 to 4
   // Except for pointers, the parts of a type are declared before it: no type contains itself.
   const auto known = [&](Id id) { return m_.types_.get(id).kind != Kind::none; };
   if (type.kind != Kind::pointer && type.element != 0 && !known(type.element))

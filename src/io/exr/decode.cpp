@@ -126,9 +126,10 @@ std::vector<int> flatParts(const Source& source, Imf::MultiPartInputFile& file) 
   return parts;
 }
 
-ExrImage readAll(const Source& source) {
+ExrImage readAll(const Source& source, MemoryBudget& budget) {
   return withExrFile(source, [&](Imf::MultiPartInputFile& file) {
     const std::vector<int> parts = flatParts(source, file);
+    for (const int part : parts) budget.take(channelBytes(file.header(part), channelNames(file.header(part)).size()));
     const Imf::Header& first = file.header(parts.front());
     const Imath::Box2i& display = first.displayWindow();
     ExrImage image{extent(display.min.x, display.max.x), extent(display.min.y, display.max.y), {}, readStrings(first)};
@@ -199,10 +200,15 @@ void keepColors(std::vector<std::string>& channels) {
 const Format kExr{"OpenEXR", isExr, probe, decode, metadata};
 
 ExrImage decodeExr(std::span<const std::byte> bytes, const std::string& nameForErrors) {
+  MemoryBudget budget(nameForErrors, 0, Remedy::none);
+  return decodeExr(bytes, nameForErrors, budget);
+}
+
+ExrImage decodeExr(std::span<const std::byte> bytes, const std::string& nameForErrors, MemoryBudget& budget) {
   const Source source{bytes, nameForErrors};
   if (!isExr(source)) source.fail("not an OpenEXR file");
   try {
-    return readAll(source);
+    return readAll(source, budget);
   } catch (const std::bad_alloc&) {
     source.fail("not enough memory for the image");
   }

@@ -87,6 +87,7 @@ void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channel
 // display window, which must be the same for all parts. A channel without a layer in a later, named part gets the
 // part's name as its layer. Throws FileError, also for subsampled channels and for files with only deep data.
 ExrImage decodeExr(std::span<const std::byte> bytes, const std::string& nameForErrors);
+ExrImage decodeExr(std::span<const std::byte> bytes, const std::string& nameForErrors, MemoryBudget&);
 
 // Returns whether the bytes start with the magic number of OpenEXR.
 bool isOpenExr(std::span<const std::byte> bytes);

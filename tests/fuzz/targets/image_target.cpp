@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/memory_budget.h"
 #include "io/codec.h"
 
 namespace quintet::fuzz {
@@ -25,7 +26,8 @@ void readImageInput(Input input) {
   std::optional<io::ImageInfo> info;
   acceptErrors([&] { info = io::probeImage(input, kName); });
   acceptErrors([&] {
-    const io::Image image = io::decodeImage(input, kName);
+    MemoryBudget budget(kName, kMaxMemory);
+    const io::Image image = io::decodeImage(input, kName, budget);
     if (image.data.size() != image.rowBytes() * image.height) reportFinding("the image has a wrong number of bytes");
     if (!info) reportFinding("the image is valid, but not its header");
     if (info->width != image.width || info->height != image.height || info->channels != image.channels ||

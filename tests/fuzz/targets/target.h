@@ -14,7 +14,7 @@ namespace quintet::fuzz {
 
 using Input = std::span<const std::byte>;
 
-// Memory that a scene can request, in bytes. tests/fuzz/targets/run makes larger single allocations a finding.
+// Memory that a file can request, in bytes. tests/fuzz/targets/run makes larger single allocations a finding.
 inline constexpr std::size_t kMaxMemory = std::size_t{64} << 20;
 
 // The entry point of a target; each target defines it in a file of its own.

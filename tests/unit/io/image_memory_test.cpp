@@ -68,6 +68,7 @@ TEST(ImageMemory, CountsWhatHeadersState) {
   for (const char* window : {"displayWindow", "dataWindow"}) {
     MemoryBudget budget("layer", kLimit);
     EXPECT_THROW(decodeExrLayer(wideExr(window), "layer", "beauty", budget), MemoryError) << window;
+    EXPECT_THROW(decodeExr(wideExr(window), "channels", budget), MemoryError) << window;
   }
 }
 

@@ -279,6 +279,19 @@ TEST(Module, ReadsAnyWordsSafely) {
   for (std::size_t size = 0; size < 200; ++size) Module::read(std::vector<std::uint32_t>(size, 0x00010000u));
 }
 
+// Rules visit each component of a vector, so a module must not state billions of them.
+TEST(Module, RejectsVectorsThatShadersCannotHave) {
+  std::vector<std::uint32_t> words = compileText(Stage::closestHit, tracer()).spirv;
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+    if ((words[at] & 0xFFFF) == static_cast<std::uint32_t>(spv::Op::OpTypeVector)) {
+      words[at + 3] = 0xFFFFFFFF;
+      break;
+    }
+  std::string why;
+  EXPECT_FALSE(Module::read(std::move(words), &why));
+  EXPECT_EQ(why, "vector or matrix with 4294967295 components");
+}
+
 TEST(Module, ReadsAStructureWithABufferReference) {
   const Module module = readText(Stage::miss, R"(#extension GL_EXT_buffer_reference : require
 layout(buffer_reference) buffer Colors { vec4 at[4]; };
