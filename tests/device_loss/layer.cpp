@@ -31,6 +31,7 @@ Key keyOf(Handle handle) {
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr next = nullptr;
+  PFN_vkDestroyInstance destroy = nullptr;  // of the next layer
 };
 
 struct Device {
@@ -149,8 +150,10 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, 
   const auto create = reinterpret_cast<PFN_vkCreateInstance>(next(VK_NULL_HANDLE, "vkCreateInstance"));
   const VkResult result = create(info, allocator, instance);
   if (result != VK_SUCCESS) return result;
+  // Once the instance is complete, the loader would return the function of the first layer instead.
+  const auto destroy = reinterpret_cast<PFN_vkDestroyInstance>(next(*instance, "vkDestroyInstance"));
   const std::lock_guard lock(mutex);
-  instances[keyOf(*instance)] = {*instance, next};
+  instances[keyOf(*instance)] = {*instance, next, destroy};
   return result;
 }
 
@@ -166,7 +169,7 @@ VKAPI_ATTR void VKAPI_CALL destroyInstance(VkInstance handle, const VkAllocation
     const std::lock_guard lock(mutex);
     instances.erase(keyOf(handle));
   }
-  reinterpret_cast<PFN_vkDestroyInstance>(instance.next(handle, "vkDestroyInstance"))(handle, allocator);
+  instance.destroy(handle, allocator);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
