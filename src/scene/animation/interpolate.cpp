@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 
 namespace quintet::scene {
 namespace {
@@ -61,10 +62,12 @@ void interpolate(const AnimationSampler& sampler, double seconds, std::span<floa
   const float* const leaving = valueOf(sampler, interval.first, KeyPart::outTangent);
   const float* const arriving = valueOf(sampler, interval.first + 1, KeyPart::inTangent);
   const double t2 = t * t, t3 = t2 * t;
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] =
-        static_cast<float>((2.0 * t3 - 3.0 * t2 + 1.0) * a[i] + interval.length * (t3 - 2.0 * t2 + t) * leaving[i] +
-                           (3.0 * t2 - 2.0 * t3) * b[i] + interval.length * (t3 - t2) * arriving[i]);
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double value = (2.0 * t3 - 3.0 * t2 + 1.0) * a[i] + interval.length * (t3 - 2.0 * t2 + t) * leaving[i] +
+                         (3.0 * t2 - 2.0 * t3) * b[i] + interval.length * (t3 - t2) * arriving[i];
+    out[i] = static_cast<float>(std::clamp(value, -kLargest, kLargest));
+  }
 }
 
 glm::dquat interpolateRotation(const AnimationSampler& sampler, double seconds) {

@@ -10,7 +10,7 @@
 namespace quintet::scene {
 
 // Writes the value at `seconds`; `out` has AnimationSampler::valueSize elements. Step: the last value at or before the
-// time. Linear: componentwise. Cubic spline: Hermite, with the tangents scaled by the length of the interval.
+// time. Linear: componentwise. Cubic spline: Hermite, with the tangents scaled by the length of the interval; clamped to finite numbers.
 void interpolate(const AnimationSampler&, double seconds, std::span<float> out);
 
 // The same for quaternions x, y, z, w: linear is spherical, along the shorter arc. The result is normalized; the

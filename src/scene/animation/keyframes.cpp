@@ -33,7 +33,8 @@ struct Interval {
   vec3 vectorAt(vec3 Keyframe::*part, Interpolation interpolation) const {
     if (interpolation == Interpolation::step) return a.*part;
     if (interpolation == Interpolation::linear) return glm::mix(a.*part, b.*part, fraction());
-    return spline(before.*part, a.*part, b.*part, after.*part);
+    const vec3 value = spline(before.*part, a.*part, b.*part, after.*part);
+    return isFinite(value) ? value : a.*part;
   }
   vec3 scaleAt(Interpolation interpolation) const {
     return glm::clamp(vectorAt(&Keyframe::scale, interpolation), glm::min(a.scale, b.scale),

@@ -114,6 +114,8 @@ void KeyframeList::readTime(Entry& entry) {
   const bool inSeconds = table.has("time");
   const char* const name = inSeconds ? "time" : "frame";
   entry.time = double{table.toNumber(*value, name)};
+  if (!std::isfinite(static_cast<float>(inSeconds ? entry.time * framesPerSecond_ : entry.time / framesPerSecond_)))
+    table.fail(*value, fmt::format("'{}' of {} is too large", name, table.what()));
   const std::size_t index = keyframes_.size() - 1;
   if (index == 0) inSeconds_ = inSeconds;
   if (inSeconds != inSeconds_)

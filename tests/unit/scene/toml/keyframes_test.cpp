@@ -169,6 +169,19 @@ TEST(SceneKeyframes, CubicSplinesCanHaveTangents) {
   }
 }
 
+TEST(SceneKeyframes, StayFinite) {
+  const scene::Scene scene = parse(
+      "[[light]]\ntype = 'point'\nposition = [0, 0, 0]\ninterpolation = 'cubic'\nkeyframes = [{ time = 0 },\n"
+      "{ time = 1e9, position = [1e38, 0, 0], color = [3e38, 0, 0], in_tangent = { position = [-1e38, 0, 0] } }]\n"
+      "[[mesh]]\nname = 'q'\nshape = 'quad'\n[[instance]]\nof = 'q'\ninterpolation = 'cubic'\n"
+      "keyframes = [{ time = 0, translate = [3e38, 0, 0] }, { time = 1, translate = [-3e38, 0, 0] }]\n");
+  for (const double time : {0.5, 0.4e9, 0.9e9, 1e9}) {
+    EXPECT_TRUE(isFinite(lightIn(scene, time).position)) << time;
+    EXPECT_TRUE(isFinite(lightIn(scene, time).intensity)) << time;
+    EXPECT_TRUE(isFinite(vec3(scene::worldFromObjectAt(scene.instances.at(0), poseOf(scene, time))[3]))) << time;
+  }
+}
+
 // ---- Cameras ----
 
 TEST(CameraKeyframes, LookFromAndAtInterpolatedPoints) {
@@ -387,6 +400,7 @@ TEST(SceneKeyframes, ErrorsNameTheKeyAndTheLine) {
        {"keyframes = [{ frame = 3 },\n{ frame = 2 }]\n", 2, {"'frame' of keyframes[1]", "frames must ascend"}},
        {"keyframes = [{ time = 1, frame = 24 }]\n", 1, {"'time' and 'frame'", "keyframes[0]", "exclusive"}},
        {"keyframes = [{ time = 1 },\n{ frame = 48 }]\n", 2, {"'time' and 'frame'", "[[light]] 'lamp'", "exclusive"}},
+       {"keyframes = [{ time = 3e38 }]\n", 1, {"'time' of keyframes[0]", "too large"}},
        {"keyframes = [{ time = nan }]\n", 1, {"'time'", "a number"}},
        {"keyframes = [{ time = 0, intensity = -1 }]\n", 1, {"'intensity' of keyframes[0]", "a number"}},
        {"keyframes = [{ time = 0, colr = [1, 1, 1] }]\n", 1, {"keyframes[0]", "'colr'", "'color'"}},
