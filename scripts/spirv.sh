@@ -35,6 +35,8 @@ for file in "$cache"/shaders/*.qspv; do
     spirv-dis --raw-id "$cache/shader.spv" >"$cache/shader.spvasm"
     name=$(sed -n 's/^ *%[0-9]* = OpString "\(.*\)"$/\1/p' "$cache/shader.spvasm" | sed -n 1p)
     name=${name##*/}
+    # Large modules have two entries: for the source, and for the output of glslang.
+    cmp -s "$cache/shader.spv" "$folder/$name.spv" && continue
     [ ! -e "$folder/$name.spv" ] || name+=.$(basename "$file" .qspv)
     mv "$cache/shader.spv" "$folder/$name.spv"
     mv "$cache/shader.spvasm" "$folder/$name.spvasm"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "shader/optimizer.h"
 #include "spirv/module.h"
 #include "spirv/print_calls.h"
 #include "spirv/trace_calls.h"
@@ -100,7 +99,7 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
     std::vector<std::uint32_t> spirv = std::move(results[k].spirv);
     if (stages[k].probes.prints) spirv = spirv::replacePrintCalls(spirv, stages[k].firstPrint);
     if (stages[k].probes.heat) spirv = spirv::addTraceCalls(spirv);
-    compiled.stages[stages[k].index].spirv = shader::optimize(spirv);
+    compiled.stages[stages[k].index].spirv = compiler.optimize(spirv);
   });
   return table;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A compilation validates the source, finds the files that it can include, looks up the key in the cache, and runs
-// glslang and spirv-opt only if that fails.
+// glslang only if that fails. The result of spirv-opt, which takes most of the time, has a key of its own, made from the
+// output of glslang: programs whose definitions differ often have the same stages.
 #include "shader/compiler.h"
 
 #include <algorithm>
@@ -9,13 +10,18 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
+#include <utility>
 
+#include <spirv-tools/libspirv.h>
 #include <shaderc/shaderc.hpp>
 
+#include "base/error.h"
 #include "shader/compiler_messages.h"
 #include "shader/deep_stack.h"
 #include "shader/include_resolver.h"
 #include "shader/library.h"
+#include "shader/optimizer.h"
 #include "shader/spirv_cache.h"
 #include "shader/stage_builtins.h"
 #include "spirv/source_text.h"
@@ -23,7 +29,8 @@
 namespace quintet::shader {
 namespace {
 
-constexpr std::uint64_t kCacheFormat = 1;  // increase it when the options or the layout of an entry change
+constexpr std::uint64_t kCacheFormat = 1;       // increase it when the options or the layout of an entry change
+constexpr std::size_t kMinCachedWords = 16384;  // of a module; spirv-opt takes 20 ms or less for smaller ones
 constexpr std::size_t kMaxTextBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxFiles = 4096;
 constexpr std::size_t kMaxIncludeDepth = 64;
@@ -39,7 +46,7 @@ struct Inputs {
 void addOptions(Hasher& hasher, const Source& source, const CompilerOptions& options) {
   unsigned spirvVersion = 0, spirvRevision = 0;
   shaderc_get_spv_version(&spirvVersion, &spirvRevision);
-  hasher.add(kCacheFormat).add(QUINTET_SHADERC_VERSION).add(spirvVersion).add(spirvRevision);
+  hasher.add(kCacheFormat).add(kOptimizerVersion).add(QUINTET_SHADERC_VERSION).add(spirvVersion).add(spirvRevision);
   hasher.add(static_cast<std::uint64_t>(source.stage)).add(options.optimize && source.optimize).add(options.debugInfo);
   hasher.add(source.defines.size());
   for (const auto& [name, value] : source.defines) hasher.add(name).add(value);
@@ -98,7 +105,7 @@ std::optional<Diagnostic> validate(const Source& source, const SourceFile& root)
   return {};
 }
 
-// The result of one run of glslang and spirv-opt.
+// The result of one run of glslang.
 struct GlslangRun {
   std::vector<std::uint32_t> spirv;  // empty if it failed
   std::vector<Diagnostic> diagnostics;
@@ -204,14 +211,14 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
   std::string missedQuoted_;
 };
 
+// shaderc does not optimize: optimize() is faster and has a cache of its own.
 shaderc::CompileOptions optionsFor(const Source& source, const CompilerOptions& options) {
   shaderc::CompileOptions result;
   result.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_3);
   result.SetTargetSpirv(shaderc_spirv_version_1_6);
   // With any other version, or without one, glslang 12 prints its own built-ins to standard output.
   result.SetForcedVersionProfile(460, shaderc_profile_core);
-  result.SetOptimizationLevel(options.optimize && source.optimize ? shaderc_optimization_level_performance
-                                                                  : shaderc_optimization_level_zero);
+  result.SetOptimizationLevel(shaderc_optimization_level_zero);
   if (options.debugInfo) result.SetGenerateDebugInfo();
   for (const auto& [name, value] : source.defines) result.AddMacroDefinition(name, value);
   return result;
@@ -278,6 +285,14 @@ Result Compiler::compile(const Source& source) const {
     GlslangRun run;
     const shaderc::Compiler& compiler = impl_->shadercCompiler();
     runOnDeepStack(stackBytesFor(inputs.textBytes), [&] { run = runGlslang(compiler, source, impl_->options, files); });
+    if (impl_->options.optimize && source.optimize && !run.spirv.empty()) {
+      try {
+        run.spirv = optimize(run.spirv);
+      } catch (const Error& e) {
+        run.spirv.clear();
+        run.diagnostics.push_back({Severity::error, files.root().name, 0, 0, "GLSL", e.what()});
+      }
+    }
     // The key does not cover includes that findIncludes misses, such as those after a comment.
     const bool keyCoversAll =
         std::ranges::all_of(run.includes, [&](const auto& i) { return inputs.includes.contains(i); });
@@ -292,6 +307,18 @@ Result Compiler::compile(const Source& source) const {
       result.files.push_back(file->diskPath);
       result.fileHashes.push_back(Hasher().add(file->text).finish());
     }
+  return result;
+}
+
+std::vector<std::uint32_t> Compiler::optimize(const std::vector<std::uint32_t>& words) const {
+  const bool debugInfo = impl_->options.debugInfo;
+  if (words.size() < kMinCachedWords) return shader::optimize(words, debugInfo);
+  Hasher hasher;
+  hasher.add("optimize").add(kOptimizerVersion).add(spvSoftwareVersionString()).add(debugInfo);
+  const Hash key = hasher.add(std::as_bytes(std::span(words))).finish();
+  if (auto entry = impl_->cache.load(key)) return std::move(entry->spirv);
+  std::vector<std::uint32_t> result = shader::optimize(words, debugInfo);
+  impl_->cache.store(key, {result, {}});
   return result;
 }
 

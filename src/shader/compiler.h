@@ -35,6 +35,10 @@ class Compiler {
   // Thread-safe. Never throws because of the source.
   Result compile(const Source& source) const;
 
+  // The optimizations of `compile`, for modules that were changed after a compilation without them (Source::optimize).
+  // Thread-safe; uses the cache. Throws Error if the module is invalid.
+  std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -10,8 +10,28 @@
 #include "shader/deep_stack.h"
 
 namespace quintet::shader {
+namespace {
 
-std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words) {
+// Replaces the variables of each function by values. The performance passes do this only after inlining, where the
+// construction of SSA form takes more than half of the time, because it grows faster than the function: with this, the
+// ray generation shader of the path tracer takes 0.6 instead of 1.5 s.
+void registerReductions(spvtools::Optimizer& optimizer) {
+  constexpr int kMaxMembers = 100;  // of a structure that is split, as in the performance passes
+  optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+      .RegisterPass(spvtools::CreateScalarReplacementPass(kMaxMembers))
+      .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
+      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass(false));
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
   std::vector<std::uint32_t> result;
   std::string message;
   bool succeeded = false;
@@ -20,9 +40,14 @@ std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words) {
     optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
       if (level <= SPV_MSG_ERROR) message = text;
     });
+    if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+    registerReductions(optimizer);
     optimizer.RegisterPerformancePasses();
+    spvtools::ValidatorOptions validation;
+    validation.SetFriendlyNames(false);   // making names takes longer than the validation
+    validation.SetSkipBlockLayout(true);  // it depends on the features of the device
     spvtools::OptimizerOptions options;
-    options.set_run_validator(false);
+    options.set_validator_options(validation);
     succeeded = optimizer.Run(words.data(), words.size(), &result, options);
   });
   if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));

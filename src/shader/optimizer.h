@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optimizations that shader::Compiler makes, for modules that were changed after a compilation without them
-// (Source::optimize).
+// The optimizations of shader::Compiler.
 #ifndef QUINTET_SHADER_OPTIMIZER_H
 #define QUINTET_SHADER_OPTIMIZER_H
 
@@ -9,8 +8,12 @@
 
 namespace quintet::shader {
 
-// Runs the performance passes of spirv-opt. Throws Error if they fail.
-std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words);
+// Increase it when `optimize` changes its results: it is part of the keys of the cache.
+inline constexpr std::uint64_t kOptimizerVersion = 1;
+
+// Validates `words`, reduces each function, and runs the performance passes of spirv-opt, which inline all functions.
+// Without `debugInfo`, removes sources, lines and names. Throws Error if the module is invalid or a pass fails.
+std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo = true);
 
 }  // namespace quintet::shader
 #endif

@@ -2,6 +2,7 @@
 // Compiles sources to SPIR-V, or to diagnostics that point into the right file.
 #include <thread>
 
+#include "base/error.h"
 #include "shader_test_support.h"
 
 namespace quintet::shader {
@@ -147,6 +148,19 @@ TEST(Compiler, AppliesOptions) {
   ASSERT_TRUE(fast.ok() && plain.ok() && debug.ok());
   EXPECT_LT(fast.spirv.size(), plain.spirv.size());
   EXPECT_LT(plain.spirv.size(), debug.spirv.size());
+}
+
+TEST(Compiler, OptimizesChangedModules) {
+  Source source = computeSource("int f(int x) { return x * 2 + 0; }", "b.x = f(b.x) + f(3);");
+  const Compiler compiler({});
+  const Result optimized = compiler.compile(source);
+  source.optimize = false;
+  const Result plain = compiler.compile(source);
+  ASSERT_TRUE(optimized.ok() && plain.ok());
+  EXPECT_EQ(compiler.optimize(plain.spirv), optimized.spirv);
+  std::vector<std::uint32_t> invalid = plain.spirv;
+  invalid.pop_back();
+  EXPECT_THROW(compiler.optimize(invalid), Error);
 }
 
 TEST(Compiler, CompilesOnSeveralThreads) {

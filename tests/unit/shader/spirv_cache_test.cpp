@@ -42,6 +42,24 @@ TEST_F(ShaderCache, ReturnsTheSameSpirvWarningsAndFiles) {
   EXPECT_EQ(entries().size(), 1u);
 }
 
+// Large modules are also found by the output of glslang.
+TEST_F(ShaderCache, OptimizesEqualModulesOnce) {
+  std::string body;
+  for (int k = 0; k < 2000; ++k) body += "b.x = b.x * K + " + std::to_string(k) + ";\n";
+  Source source = computeSource("#ifndef K\n#define K 3\n#endif", body);
+  const Result plain = compile(source);
+  ASSERT_TRUE(plain.ok()) << all(plain);
+  EXPECT_EQ(entries().size(), 2u);
+  source.defines = {{"UNUSED", ""}};
+  const Result same = compile(source);
+  EXPECT_FALSE(same.fromCache);
+  EXPECT_EQ(same.spirv, plain.spirv);
+  EXPECT_EQ(entries().size(), 3u);
+  source.defines = {{"K", "5"}};
+  EXPECT_NE(compile(source).spirv, plain.spirv);
+  EXPECT_EQ(entries().size(), 5u);
+}
+
 TEST_F(ShaderCache, DependsOnSourceStageDefinesIncludesAndOptions) {
   const TemporaryFolder folder;
   Source source = computeSource("#include <x.glsl>\n#ifdef D\n#endif", "b.x = 3;");
