@@ -92,10 +92,14 @@ struct Case {
   const char* name;
   BlockFormat block;
   VkFormat format;
-  // Largest difference. Devices may interpolate between the endpoints of BC1 to BC5 in 8 bits, and lavapipe truncates the
-  // result; the others are exact.
+  // Largest difference from lavapipe, which interpolates between the endpoints of BC1 to BC5 in 8 bits and truncates the
+  // result. The others are exact on all devices.
   float tolerance;
 };
+
+// Largest difference of a weight of BC1 to BC5: the H100 has 3/8 for 1/3 and for 2/5.
+constexpr float kWeightError = 1.0f / 24.0f;
+
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 constexpr Case kCases[] = {
@@ -135,6 +139,10 @@ TEST_P(BlockDecode, EqualsTheDevice) {
   vkGetPhysicalDeviceFormatProperties(context.physicalDevice(), c.format, &properties);
   if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_SRC_BIT))
     GTEST_SKIP() << "the device does not support " << c.name;
+  float tolerance = c.tolerance;
+  const bool isSigned = c.block == BlockFormat::bc4Signed || c.block == BlockFormat::bc5Signed;
+  const bool isInterpolated = c.tolerance > 1e-6f;  // BC1 to BC5
+  if (isInterpolated && !context.info().software) tolerance += kWeightError * (isSigned ? 2.0f : 1.0f);
   const std::vector<std::byte> blocks = randomBlocks(c.block);
   const std::vector<float> expected = decodeOnDevice(c.format, blocks);
   // The samples as they are stored, without decoding sRGB.
@@ -151,7 +159,7 @@ TEST_P(BlockDecode, EqualsTheDevice) {
           case PixelType::f32: value = raw.pixel<float>(x, y)[k]; break;
         }
         const float wanted = expected[4 * (std::size_t{y} * kSide + x) + k];
-        if (std::abs(value - wanted) <= c.tolerance) continue;
+        if (std::abs(value - wanted) <= tolerance) continue;
         if (++different <= 5)
           ADD_FAILURE() << "block " << (y / 4 * (kSide / 4) + x / 4) << ", texel " << x % 4 << ", " << y % 4
                         << ", channel " << k << ": " << value << ", expected " << wanted << "; first byte "

@@ -122,7 +122,7 @@ TEST(Deformation, IgnoresDisplacementsOfAbsentAttributes) {
 // Values that are not finite, weights without a sum, and normals and tangents without a direction.
 TEST(Deformation, RepairsAsTheHost) {
   DeformedScene scene(3);
-  const int skin = scene.addSkin(6, vec3(1.0f)), flat = scene.addSkin(2, vec3(0.0f));
+  const int skin = scene.addSkin(6, vec3(1.0f));
   DeformedMeshOptions options{
       .targets = 3, .targetNormals = true, .targetTangents = true, .tangents = true, .broken = true};
   scene.addMesh(options);
@@ -131,8 +131,30 @@ TEST(Deformation, RepairsAsTheHost) {
   scene.addMesh(options);
   options.normals = options.tangents = options.targetNormals = options.targetTangents = false;
   scene.addMesh(options);
-  scene.addMesh({.skin = flat, .skinSets = 1, .tangents = true});
   expectHostVertices(scene.build());
+}
+
+// Joints with a scale of 0 move all vertices onto a line. The rounding of the device decides which of the perpendicular
+// directions become normals.
+TEST(Deformation, GivesCollapsedMeshesDirections) {
+  DeformedScene source(4);
+  const int flat = source.addSkin(2, vec3(0.0f));
+  source.addMesh({.skin = flat, .skinSets = 1, .tangents = true});
+  const scene::Scene scene = source.build();
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{}, {.compiler = &testCompiler()});
+  device.setFrame(7.0);
+  scene::Scene posed = scene;
+  scene::applyPose(posed, scene::poseAt(scene.nodeAnimation.get(), 7.0));
+  const std::vector<vec3>& positions = posed.meshes[0].geometries[0].positions;
+  const std::vector<DeviceVertex> vertices = readVertices(device, scene);
+  ASSERT_EQ(vertices.size(), positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const vec3 tangent(vertices[i].tangent);
+    EXPECT_LT(glm::length(vertices[i].position - positions[i]), 1e-5f) << i;
+    EXPECT_NEAR(glm::length(vertices[i].normal), 1.0f, 1e-5f) << i;
+    EXPECT_NEAR(glm::length(tangent), 1.0f, 1e-5f) << i;
+    EXPECT_NEAR(glm::dot(vertices[i].normal, tangent), 0.0f, 1e-5f) << i;
+  }
 }
 
 // ---- Quality of trees ----
