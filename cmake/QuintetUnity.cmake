@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# quintet_unity(TARGET) compiles the sources of a test executable in groups of eight, which takes half of the time in a new
-# clone: the sources of a group share the headers and their templates. A changed test then compiles with its group; use
-# -DQUINTET_UNITY=OFF while you work on tests. Sources of a group must not define the same name, even in unnamed
+# quintet_unity(TARGET) compiles the sources of a target in groups of eight, which takes half of the time in a new
+# clone: the sources of a group share the headers and their templates. A changed source then compiles with its group; use
+# -DQUINTET_UNITY=OFF while you work on them. Sources of a group must not define the same name, even in unnamed
 # namespaces. Sources with compile options of their own stay alone.
-option(QUINTET_UNITY "Compile tests in groups" ON)
+option(QUINTET_UNITY "Compile sources in groups" ON)
 
 function(quintet_unity TARGET)
   if(QUINTET_UNITY)

@@ -62,6 +62,8 @@ struct Bounds3 {
 };
 
 inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool isFinite(const vec4& v) { return isFinite(vec3(v)) && std::isfinite(v.w); }
+inline bool isFinite(const mat4& m) { return isFinite(m[0]) && isFinite(m[1]) && isFinite(m[2]) && isFinite(m[3]); }
 
 }  // namespace quintet
 #endif

@@ -16,7 +16,7 @@ namespace quintet::job {
 namespace {
 
 // 16 MiB: about 6,000 bounces of the path tracer.
-constexpr std::uint32_t kLogWords = 1u << 22;
+constexpr std::uint32_t kEventLogWords = 1u << 22;
 
 // Whether the text of a program that accumulates mentions the functions that read any pixel of the previous frame. In the
 // lecture form, gsnGetPreviousPixel reads the own pixel.
@@ -90,7 +90,7 @@ PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job)
     : engine_(engine),
       job_(job),
       image_{{job.scene()->camera, job.scene()->cameraDescription}, job.scene()->size},
-      log_(engine.context(), job.region(), kLogWords),
+      log_(engine.context(), job.region(), kEventLogWords),
       program_(runnableProgram(engine, job, program::Instrumentation::explain)),
       renderer_(job.renderer()) {
   job.showRequestedFrame();  // for programs that accumulate, renderEarlierFrames() sets the frame
@@ -101,7 +101,7 @@ PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job, const ExplainedIm
     : engine_(engine),
       job_(job),
       image_(image),
-      log_(engine.context(), {pixel.x, pixel.y, 1, 1}, kLogWords),
+      log_(engine.context(), {pixel.x, pixel.y, 1, 1}, kEventLogWords),
       program_(runnableProgram(engine, job, program::Instrumentation::explain)),
       own_(std::make_unique<render::Renderer>(
           *job.scene()->onDevice, runnableProgram(engine, job, program::Instrumentation::none), engine.compiler(),

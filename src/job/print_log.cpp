@@ -11,7 +11,7 @@
 namespace quintet::job {
 namespace {
 
-constexpr std::uint32_t kLogWords = 1u << 20;  // 4 MiB: more than 100,000 prints in a batch
+constexpr std::uint32_t kPrintLogWords = 1u << 20;  // 4 MiB: more than 100,000 prints in a batch
 
 render::Region printedPixels(const PrintRequest& request, const render::Region& rendered) {
   if (request.all) return rendered;
@@ -52,7 +52,7 @@ Printed printedLines(const render::LogContents& log, const program::PrintTable& 
 
 PrintLog::PrintLog(gpu::Context& context, const PrintRequest& request, const render::Region& rendered,
                    program::PrintTable table)
-    : log_(context, printedPixels(request, rendered), kLogWords),
+    : log_(context, printedPixels(request, rendered), kPrintLogWords),
       table_(std::move(table)),
       limit_(request.limit),
       remaining_(request.limit) {}

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/luminance.h"
+#include "base/math.h"
 #include "base/stopwatch.h"
 #include "gpu/error.h"
 #include "job/brightest_samples.h"
@@ -18,9 +19,7 @@
 namespace quintet::job {
 namespace {
 
-bool isFinite(const vec4& value) { return !glm::any(glm::isnan(value)) && !glm::any(glm::isinf(value)); }
-
-bool isFinite(const std::string& name, const EventValue& value) {
+bool isFiniteValue(const std::string& name, const EventValue& value) {
   // A ray may be infinitely long.
   if (const auto* number = std::get_if<float>(&value))
     return name == "tmax" ? !std::isnan(*number) : std::isfinite(*number);
@@ -46,7 +45,7 @@ class CauseFinder {
     if (event.type == "bsdf") now_.lobe = event.text("lobe");
     if (notFinite_) {
       for (const auto& [name, value] : event.fields)
-        if (!isFinite(name, value)) return found(event, name);
+        if (!isFiniteValue(name, value)) return found(event, name);
     } else if (event.type == "contribution" && luminance(event.vector("value")) > largest_) {
       largest_ = luminance(event.vector("value"));
       found(event, {});

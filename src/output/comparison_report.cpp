@@ -12,6 +12,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "job/film_store.h"
+#include "output/json_line.h"
 
 namespace quintet::output {
 namespace {
@@ -21,8 +22,6 @@ using render::ZTest;
 using render::ZTestMeans;
 
 constexpr std::array<const char*, 4> kChannels{"red", "green", "blue", "alpha"};
-
-std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 double relative(const ZTestMeans& m, double value) {
   const double mean = 0.5 * (std::abs(m.mean[0]) + std::abs(m.mean[1]));
@@ -80,7 +79,7 @@ std::string comparisonJson(const io::Comparison& comparison, const std::string& 
   Json json{{"a", a}, {"b", b}, {"size", {size.x, size.y}}};
   for (const Measure& m : measures(comparison)) json[m.name] = std::isfinite(m.value) ? Json(m.value) : Json();
   json["nonFinitePixels"] = comparison.nonFinitePixels;
-  return oneLine(json);
+  return jsonLine(json);
 }
 
 std::string comparisonJson(const job::FilmComparison& c) {
@@ -89,34 +88,34 @@ std::string comparisonJson(const job::FilmComparison& c) {
   const render::Region& region = c.films[0].film.region;
   Json image = Json::array();
   for (const ZTestMeans& m : test.image) image.push_back(meansJson(m));
-  return oneLine({{"a", c.files[0].string()},
-                  {"b", c.files[1].string()},
-                  {"same", !test.rejected},
-                  {"level", c.options.level},
-                  {"size", {region.width, region.height}},
-                  {"samples", both([&](std::size_t i) { return c.samples(i); })},
-                  {"batches", both([&](std::size_t i) {
-                     return (c.samples(i) + render::kBatchSamples - 1) / render::kBatchSamples;
-                   })},
-                  {"seeds", both([&](std::size_t i) { return fmt::format("{}", c.provenance[i].seed); })},
-                  {"devices", both([&](std::size_t i) { return c.provenance[i].device; })},
-                  {"drivers", both([&](std::size_t i) { return c.provenance[i].driver; })},
-                  {"block", c.options.block},
-                  {"blocks", test.blocks.size() / test.image.size()},
-                  {"tests", test.blocks.size()},
-                  {"blockLevel", test.blockLevel},
-                  {"smallest", meansJson(test.blocks[test.smallest])},
-                  {"imageLevel", test.imageLevel},
-                  {"image", image},
-                  {"distribution",
-                   {{"noisyTests", test.noisy},
-                    {"rms", test.rms},
-                    {"beyond1.96", test.beyond[0]},
-                    {"beyond2.58", test.beyond[1]},
-                    {"beyond3.29", test.beyond[2]}}},
-                  {"nonFinitePixels", test.nonFinitePixels},
-                  {"unknownPixels", test.unknownPixels},
-                  {"notes", c.notes}});
+  return jsonLine({{"a", c.files[0].string()},
+                   {"b", c.files[1].string()},
+                   {"same", !test.rejected},
+                   {"level", c.options.level},
+                   {"size", {region.width, region.height}},
+                   {"samples", both([&](std::size_t i) { return c.samples(i); })},
+                   {"batches", both([&](std::size_t i) {
+                      return (c.samples(i) + render::kBatchSamples - 1) / render::kBatchSamples;
+                    })},
+                   {"seeds", both([&](std::size_t i) { return fmt::format("{}", c.provenance[i].seed); })},
+                   {"devices", both([&](std::size_t i) { return c.provenance[i].device; })},
+                   {"drivers", both([&](std::size_t i) { return c.provenance[i].driver; })},
+                   {"block", c.options.block},
+                   {"blocks", test.blocks.size() / test.image.size()},
+                   {"tests", test.blocks.size()},
+                   {"blockLevel", test.blockLevel},
+                   {"smallest", meansJson(test.blocks[test.smallest])},
+                   {"imageLevel", test.imageLevel},
+                   {"image", image},
+                   {"distribution",
+                    {{"noisyTests", test.noisy},
+                     {"rms", test.rms},
+                     {"beyond1.96", test.beyond[0]},
+                     {"beyond2.58", test.beyond[1]},
+                     {"beyond3.29", test.beyond[2]}}},
+                   {"nonFinitePixels", test.nonFinitePixels},
+                   {"unknownPixels", test.unknownPixels},
+                   {"notes", c.notes}});
 }
 
 std::string comparisonText(const job::FilmComparison& c) {

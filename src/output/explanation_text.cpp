@@ -14,6 +14,7 @@
 #include "base/wrap.h"
 #include "job/float_json.h"
 #include "output/float_text.h"
+#include "output/json_line.h"
 
 namespace quintet::output {
 namespace {
@@ -439,7 +440,7 @@ std::string explanationDiffJson(const job::ExplanationDiff& diff, const std::str
   json["first"] = diff.first ? entry(*diff.first) : Json();
   json["outputs"] = Json::array();
   for (const job::ExplanationDifference& output : diff.outputs) json["outputs"].push_back(entry(output));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonLine(json);
 }
 
 }  // namespace quintet::output

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "gpu/context.h"
 #include "output/info.h"
+#include "output/json_line.h"
 
 namespace quintet::output {
 namespace {
@@ -86,7 +87,7 @@ std::string devicesInfo(bool json) {
     Json all = Json::array();
     for (const gpu::DeviceInfo& device : devices) all.push_back(toJson(device));
     const Json result{{"version", QUINTET_VERSION}, {"devices", std::move(all)}};
-    return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonLine(result);
   }
   if (devices.empty()) return "no Vulkan device found: install a GPU driver or Mesa's lavapipe (docs/install.md)\n";
   std::string text;

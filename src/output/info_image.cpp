@@ -21,6 +21,7 @@
 #include "job/film_store.h"
 #include "job/provenance.h"
 #include "output/info.h"
+#include "output/json_line.h"
 #include "render/film/film_file.h"
 #include "scene/load.h"
 
@@ -33,8 +34,6 @@ using Bytes = std::span<const std::byte>;
 
 constexpr std::size_t kMaxAttributeText = 240;  // characters: a manifest can have thousands
 constexpr std::size_t kMaxFactText = 100;
-
-std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 std::string shortened(std::string text, std::size_t limit) {
   if (text.size() > limit) text = text.substr(0, limit) + "...";
@@ -136,16 +135,16 @@ std::string exrInfo(const std::filesystem::path& file, Bytes bytes, bool json) {
     for (const Part& part : parts) all.push_back(partJson(part));
     for (const Part::Attribute& attribute : first.attributes)
       if (attribute.type == "string") texts[attribute.name] = attribute.text;
-    return oneLine({{"file", file.string()},
-                    {"kind", "image"},
-                    {"format", "OpenEXR"},
-                    {"width", first.display.width},
-                    {"height", first.display.height},
-                    {"channels", channels},
-                    {"type", "float"},
-                    {"bytes", bytes.size()},
-                    {"metadata", std::move(texts)},
-                    {"parts", std::move(all)}});
+    return jsonLine({{"file", file.string()},
+                     {"kind", "image"},
+                     {"format", "OpenEXR"},
+                     {"width", first.display.width},
+                     {"height", first.display.height},
+                     {"channels", channels},
+                     {"type", "float"},
+                     {"bytes", bytes.size()},
+                     {"metadata", std::move(texts)},
+                     {"parts", std::move(all)}});
   }
   const std::string layout =
       first.tileWidth > 0 ? fmt::format("tiles of {}x{}", first.tileWidth, first.tileHeight) : "scan lines";
@@ -202,7 +201,7 @@ std::string filmInfo(const std::filesystem::path& file, Bytes bytes, bool json, 
     result["adaptive"] = {{"average", render::averageSamples(region, film.film.counts)},
                           {"planned", film.plan.empty() ? Json() : Json(render::averageSamples(region, planned))}};
   }
-  return oneLine(result);
+  return jsonLine(result);
 }
 
 std::string imageInfo(const std::filesystem::path& file, Bytes bytes, bool json) {
@@ -211,15 +210,15 @@ std::string imageInfo(const std::filesystem::path& file, Bytes bytes, bool json)
   if (json) {
     Json texts = Json::object();
     for (const auto& [keyword, text] : metadata) texts[keyword] = text;
-    return oneLine({{"file", file.string()},
-                    {"kind", "image"},
-                    {"format", info.format},
-                    {"width", info.width},
-                    {"height", info.height},
-                    {"channels", info.channels},
-                    {"type", typeText(info.type)},
-                    {"bytes", bytes.size()},
-                    {"metadata", std::move(texts)}});
+    return jsonLine({{"file", file.string()},
+                     {"kind", "image"},
+                     {"format", info.format},
+                     {"width", info.width},
+                     {"height", info.height},
+                     {"channels", info.channels},
+                     {"type", typeText(info.type)},
+                     {"bytes", bytes.size()},
+                     {"metadata", std::move(texts)}});
   }
   std::string text =
       fmt::format("{}: {}, {}x{}, {}, {}, {}\n", printable(file.string()), info.format, info.width, info.height,

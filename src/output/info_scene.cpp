@@ -11,6 +11,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "output/info.h"
+#include "output/json_line.h"
 #include "scene/load.h"
 #include "scene/model/content_hash.h"
 #include "scene/model/names.h"
@@ -345,7 +346,7 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
 std::string sceneInfo(const std::filesystem::path& file, bool json, const scene::LoadOptions& options) {
   const scene::Scene scene = scene::loadScene(file, options);
   if (!json) return toText(scene, file.string());
-  return toJson(scene, file.string()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonLine(toJson(scene, file.string()));
 }
 
 }  // namespace quintet::output

@@ -21,7 +21,6 @@ namespace quintet::output {
 namespace {
 
 using program::OutputPixel;
-using Json = nlohmann::json;
 
 Layer layerOf(const program::Program& program, std::size_t output) {
   const program::Output& description = program.outputs[output];
@@ -84,7 +83,7 @@ bool isStored(const job::FilmView& film, const Layer& layer) {
   return counts == (layer.source == Layer::Source::coverage);
 }
 
-Layer parseLayer(const Json& json, const job::FilmView& film) {
+Layer parseLayer(const nlohmann::json& json, const job::FilmView& film) {
   Layer layer;
   layer.name = json.at("name").get<std::string>();
   layer.channels = json.at("channels").get<std::vector<std::string>>();
@@ -163,7 +162,7 @@ std::size_t channelCount(const std::vector<Layer>& layers, std::size_t imageChan
 
 std::string layersText(const std::vector<Layer>& layers) {
   if (layers.empty()) return "";
-  Json list = Json::array();
+  nlohmann::json list = nlohmann::json::array();
   for (const Layer& layer : layers) {
     const bool ofOutput = layer.source == Layer::Source::output || layer.source == Layer::Source::coverage;
     const std::size_t order = ofOutput ? layer.output : 1'000'000 + static_cast<std::size_t>(layer.source);
@@ -174,17 +173,17 @@ std::string layersText(const std::vector<Layer>& layers) {
                     {"output", layer.output},
                     {"order", order}});
   }
-  return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return list.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::vector<Layer> parseLayers(const std::string& text, const job::FilmView& film) {
   if (text.empty()) return {};
   try {
     std::vector<Layer> layers;
-    for (const Json& layer : Json::parse(text)) layers.push_back(parseLayer(layer, film));
+    for (const nlohmann::json& layer : nlohmann::json::parse(text)) layers.push_back(parseLayer(layer, film));
     checkChannels(layers);
     return layers;
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     throw UsageError("the layers of the film cannot be read");
   }
 }

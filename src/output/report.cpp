@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "check/diagnostic_text.h"
 #include "job/printed_line_json.h"
+#include "output/json_line.h"
 
 namespace quintet::output {
 namespace {
@@ -61,8 +62,6 @@ Json framesJson(const std::vector<FrameFiles>& frames) {
   return list;
 }
 
-std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
 }  // namespace
 
 std::string printedText(const job::PrintedLine& line) {
@@ -79,7 +78,7 @@ std::string printedText(const job::PrintedLine& line) {
   }
 }
 
-std::string printedJson(const job::PrintedLine& line) { return oneLine({{"print", job::printedLineJson(line)}}); }
+std::string printedJson(const job::PrintedLine& line) { return jsonLine({{"print", job::printedLineJson(line)}}); }
 
 std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds,
                        const std::vector<FrameFiles>& frames) {
@@ -117,7 +116,7 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
   }
   json["warnings"] = result.warnings;
   json["diagnostics"] = Json::parse(check::diagnosticsJson(result.diagnostics));
-  return oneLine(json);
+  return jsonLine(json);
 }
 
 std::string errorJson(const std::string& message, const FileError* file, int exitStatus) {
@@ -127,7 +126,7 @@ std::string errorJson(const std::string& message, const FileError* file, int exi
                     {"file", file ? known(file->file().string()) : Json()},
                     {"location", file ? known(file->location()) : Json()},
                     {"exitStatus", exitStatus}}}};
-  return oneLine(json);
+  return jsonLine(json);
 }
 
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files,

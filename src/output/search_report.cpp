@@ -12,6 +12,7 @@
 #include "base/wrap.h"
 #include "job/float_json.h"
 #include "output/float_text.h"
+#include "output/json_line.h"
 
 namespace quintet::output {
 namespace {
@@ -101,7 +102,7 @@ std::string searchJson(const job::SearchResult& result, const CommandFor& comman
     entry["level"] = job::floatJson(found.level);
     json["fireflies"].push_back(std::move(entry));
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonLine(json);
 }
 
 }  // namespace quintet::output

@@ -180,6 +180,11 @@ bool loadsBuiltIn(const Module& module, const Instruction& instruction, spv::Bui
   return loadedBuiltIn(module, instruction) == builtIn;
 }
 
+bool loadsBuiltIn(const Module& module, Id value, spv::BuiltIn builtIn) {
+  const Instruction* const instruction = module.definition(value);
+  return instruction && loadsBuiltIn(module, *instruction, builtIn);
+}
+
 bool isExtended(const Module& module, const Instruction& instruction, std::uint32_t number) {
   return instruction.op == spv::Op::OpExtInst && instruction.at(1) == number &&
          module.extendedSet(instruction.at(0)) == "GLSL.std.450";

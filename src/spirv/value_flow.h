@@ -51,6 +51,7 @@ const Instruction* findInUses(const Module& module, Id value, const InstructionT
 // Returns the built-in of which the instruction loads a part or all; nullopt if it loads none.
 std::optional<spv::BuiltIn> loadedBuiltIn(const Module& module, const Instruction& instruction);
 bool loadsBuiltIn(const Module& module, const Instruction& instruction, spv::BuiltIn builtIn);
+bool loadsBuiltIn(const Module& module, Id value, spv::BuiltIn builtIn);
 
 // True for the GLSL.std.450 instruction with this number, e.g. GLSLstd450Normalize.
 bool isExtended(const Module& module, const Instruction& instruction, std::uint32_t number);

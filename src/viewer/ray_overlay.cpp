@@ -57,8 +57,6 @@ std::uint32_t colorOf(OverlayRayKind kind) {
 
 bool isShadow(OverlayRayKind kind) { return kind == OverlayRayKind::visible || kind == OverlayRayKind::occluded; }
 
-bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 // ---- From events to rays
 
 const ExplainedEvent* hitOf(const ExplainedEvent& ray) {

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kMaxNames = 6;  // geometries of a hit group
 
-class Builder {
+class DiagramBuilder {
  public:
-  explicit Builder(const PipelineModel& model) : model_(model) {}
+  explicit DiagramBuilder(const PipelineModel& model) : model_(model) {}
 
   Diagram build() {
     addHead();
@@ -266,7 +266,7 @@ std::string_view fillColor(NodeKind kind) {
   return "#ffffff";
 }
 
-Diagram diagramOf(const PipelineModel& model) { return Builder(model).build(); }
+Diagram diagramOf(const PipelineModel& model) { return DiagramBuilder(model).build(); }
 
 std::string dotText(const Diagram& diagram) {
   constexpr std::string_view kHighlight = "color=\"#c8102e\", penwidth=2.5";

@@ -57,9 +57,9 @@ std::string quotedList(std::string_view label, const std::vector<std::string>& n
   return fmt::format("{} '{}'", label, fmt::join(names, "', '"));
 }
 
-class Builder {
+class ModelBuilder {
  public:
-  Builder(const PipelineGraph& graph, const program::SceneFacts* scene, const CheckResult& result)
+  ModelBuilder(const PipelineGraph& graph, const program::SceneFacts* scene, const CheckResult& result)
       : graph_(graph), program_(graph.program), scene_(scene) {
     model_.program = program_.name;
     if (scene_) model_.scene = scene_->name;
@@ -247,7 +247,7 @@ std::optional<PipelineModel> describePipeline(const program::Program& program, c
   if (!graph.error.empty()) return {};
   std::optional<program::SceneFacts> facts;
   if (scene) facts = program::factsFor(program, *scene);
-  return Builder(graph, facts ? &*facts : nullptr, result).build();
+  return ModelBuilder(graph, facts ? &*facts : nullptr, result).build();
 }
 
 namespace {

@@ -14,7 +14,7 @@ namespace quintet::check {
 namespace {
 
 // Pixels. Monospaced fonts have an advance of at most 0.61 of their size.
-constexpr double kFont = 12, kCharacter = 0.61 * kFont, kLine = 16, kPadding = 8, kMargin = 20;
+constexpr double kFont = 12, kCharacter = 0.61 * kFont, kLine = 16, kPadding = 8, kPageMargin = 20;
 constexpr std::size_t kTextColumns = 46;  // rows of boxes break here
 constexpr double kMinWidth = 560;         // of the image, for the diagnostics
 
@@ -106,7 +106,7 @@ class Drawing {
   }
 
   std::string run() {
-    width_ = std::max(layout_.size.width, kMinWidth) + 2 * kMargin;
+    width_ = std::max(layout_.size.width, kMinWidth) + 2 * kPageMargin;
     drawHead();
     top_ = y_;
     std::string highlights;  // on top of all others
@@ -122,15 +122,15 @@ class Drawing {
 
  private:
   void drawHead() {
-    y_ = kMargin + kLine;
+    y_ = kPageMargin + kLine;
     body_ += fmt::format("<text x=\"{}\" y=\"{:.1f}\" fill=\"{}\" font-weight=\"bold\" font-size=\"16\">{}</text>\n",
-                         kMargin, y_, kInk, escaped(diagram_.title));
-    for (const std::string& fact : diagram_.facts) body_ += textAt(kMargin, y_ += kLine, fact, kFaint);
+                         kPageMargin, y_, kInk, escaped(diagram_.title));
+    for (const std::string& fact : diagram_.facts) body_ += textAt(kPageMargin, y_ += kLine, fact, kFaint);
     y_ += 1.5 * kLine;
-    double x = kMargin;
+    double x = kPageMargin;
     const auto entry = [&](std::string_view label, const char* color, bool dashed, double thickness) {
       const double width = 30 + static_cast<double>(columnsOf(label)) * kCharacter;
-      if (x > kMargin && x + width > width_ - kMargin) x = kMargin, y_ += kLine;
+      if (x > kPageMargin && x + width > width_ - kPageMargin) x = kPageMargin, y_ += kLine;
       body_ += fmt::format("<path d=\"M{:.1f} {:.1f}h22\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n", x, y_ - 4, color,
                            thickness, dashed ? " stroke-dasharray=\"5 4\"" : "");
       body_ += textAt(x + 28, y_, label, kFaint);
@@ -144,7 +144,7 @@ class Drawing {
     y_ += kLine;
   }
 
-  LayoutPoint shifted(LayoutPoint p) const { return {p.x + kMargin, p.y + top_}; }
+  LayoutPoint shifted(LayoutPoint p) const { return {p.x + kPageMargin, p.y + top_}; }
 
   std::string edge(std::size_t index) const {
     const DiagramEdge& e = diagram_.edges[index];
@@ -203,10 +203,10 @@ class Drawing {
   }
 
   void drawDiagnostics() {
-    const auto columns = static_cast<std::size_t>((width_ - 2 * kMargin) / kCharacter);
+    const auto columns = static_cast<std::size_t>((width_ - 2 * kPageMargin) / kCharacter);
     for (const std::string& diagnostic : diagram_.diagnostics)
       for (const std::string& line : linesOf(diagnostic, columns))
-        body_ += textAt(kMargin, y_ += kLine, line, kHighlight);
+        body_ += textAt(kPageMargin, y_ += kLine, line, kHighlight);
   }
 
   std::string document() const {
@@ -218,7 +218,7 @@ class Drawing {
           "<marker id=\"a{}\" viewBox=\"0 0 10 10\" refX=\"9\" refY=\"5\" markerWidth=\"9\" markerHeight=\"9\" "
           "markerUnits=\"userSpaceOnUse\" orient=\"auto\"><path d=\"M0 0L10 5L0 10z\" fill=\"{}\"/></marker>\n",
           color.substr(1), color);
-    const double height = y_ + kMargin;
+    const double height = y_ + kPageMargin;
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
         "{1:.0f}\" "

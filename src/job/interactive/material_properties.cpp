@@ -18,7 +18,7 @@ namespace {
 using scene::Material;
 using Member = std::variant<float Material::*, vec3 Material::*, vec4 Material::*, bool Material::*>;
 
-constexpr std::array<std::pair<std::string_view, Member>, 32> kProperties{{
+constexpr std::array<std::pair<std::string_view, Member>, 32> kMaterialProperties{{
     {"baseColor", &Material::baseColor},
     {"metallic", &Material::metallic},
     {"roughness", &Material::roughness},
@@ -106,15 +106,15 @@ const char* formOf(const Member& member) {
 
 std::vector<std::string> materialProperties() {
   std::vector<std::string> names;
-  for (const auto& [name, member] : kProperties) names.emplace_back(name);
+  for (const auto& [name, member] : kMaterialProperties) names.emplace_back(name);
   return names;
 }
 
 namespace {
 
 const Member& findMember(const std::string& name) {
-  const auto found = std::ranges::find(kProperties, name, &std::pair<std::string_view, Member>::first);
-  if (found == kProperties.end())
+  const auto found = std::ranges::find(kMaterialProperties, name, &std::pair<std::string_view, Member>::first);
+  if (found == kMaterialProperties.end())
     throw UsageError(
         fmt::format("materials have no property '{}'{}", name, suggestionOrList(name, materialProperties())));
   return found->second;

@@ -12,7 +12,7 @@ namespace quintet::render {
 static_assert(sizeof(shared::DeformPass) <= sizeof(shared::Launch), "the push constants of the scene's set");
 namespace {
 
-constexpr VkDeviceSize kAlignment = 16;
+constexpr VkDeviceSize kArrayAlignment = 16;
 
 // Arrays of one buffer. First all arrays are added, then the buffer is created; then addresses are known, which other
 // arrays can contain; then all are uploaded.
@@ -24,12 +24,13 @@ class PackedArrays {
     if (values.empty()) return;
     offsets_[values.data()] = size_;
     arrays_.push_back(std::as_bytes(std::span(values)));
-    size_ += (arrays_.back().size() + kAlignment - 1) / kAlignment * kAlignment;
+    size_ += (arrays_.back().size() + kArrayAlignment - 1) / kArrayAlignment * kArrayAlignment;
   }
   void create(gpu::Context& context) {
-    buffer_ = gpu::Buffer(
-        context,
-        {.size = size_, .alignment = kAlignment, .name = "undeformed vertices", .purpose = gpu::Purpose::geometry});
+    buffer_ = gpu::Buffer(context, {.size = size_,
+                                    .alignment = kArrayAlignment,
+                                    .name = "undeformed vertices",
+                                    .purpose = gpu::Purpose::geometry});
   }
   // 0 for an empty array.
   template <class T>

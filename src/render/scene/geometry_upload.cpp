@@ -11,10 +11,10 @@
 namespace quintet::render {
 namespace {
 
-constexpr VkDeviceSize kAlignment = 16;
+constexpr VkDeviceSize kBufferAlignment = 16;
 constexpr VkDeviceSize kArenaBytes = VkDeviceSize{256} << 20;
 
-VkDeviceSize aligned(VkDeviceSize size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
+VkDeviceSize aligned(VkDeviceSize size) { return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment; }
 
 // An array on the device and its host view: mapped device memory, or the scene's array.
 template <class T>
@@ -59,7 +59,7 @@ class Arena {
       options.size += sizes_[i];
     options.memory = context_.info().software ? gpu::Memory::upload : gpu::Memory::device;
     options.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
-    options.alignment = kAlignment;
+    options.alignment = kBufferAlignment;
     options.name = "geometry attributes";
     options.purpose = gpu::Purpose::geometry;
     target_.buffers.emplace_back(context_, options);

@@ -18,7 +18,7 @@ T hermite(const T& a, const T& leaving, const T& b, const T& arriving, float t) 
 quat alignedTo(const quat& other, const quat& q) { return glm::dot(other, q) < 0.0f ? -q : q; }
 
 // Two keyframes with a frame between them, and their other neighbors, which are themselves at the ends of the list.
-struct Interval {
+struct KeyInterval {
   const Keyframe &a, &b, &before, &after;
   float frame;
 
@@ -64,8 +64,8 @@ mat4 keyframeMatrixAt(const std::vector<Keyframe>& keys, float frame, const Keyf
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Keyframe::frame);
   if (next == keys.begin()) return matrixOf(keys.front());
   if (next == keys.end()) return matrixOf(keys.back());
-  const Interval interval{*(next - 1), *next, next - keys.begin() > 1 ? *(next - 2) : *(next - 1),
-                          keys.end() - next > 1 ? *(next + 1) : *next, frame};
+  const KeyInterval interval{*(next - 1), *next, next - keys.begin() > 1 ? *(next - 2) : *(next - 1),
+                             keys.end() - next > 1 ? *(next + 1) : *next, frame};
   return matrixOf({frame, interval.vectorAt(&Keyframe::translation, interpolation.translation),
                    interval.rotationAt(interpolation.rotation), interval.scaleAt(interpolation.scale)});
 }

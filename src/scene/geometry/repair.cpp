@@ -48,7 +48,7 @@ std::size_t countIf(std::vector<T>& values, const Test& test) {
 std::size_t dropNonFiniteTriangles(Geometry& geometry) {
   auto& positions = geometry.positions;
   if (countIf(positions, [](const vec3& p) { return !isFinite(p); }) == 0) return 0;
-  const auto good = std::ranges::find_if(positions, isFinite);
+  const auto good = std::ranges::find_if(positions, [](const vec3& p) { return isFinite(p); });
 
   std::vector<uvec3> kept;
   std::vector<std::uint32_t> numbers;

@@ -27,12 +27,6 @@ std::string objectName(const char* list, std::size_t index, const std::string& n
 
 bool inRange(int index, std::size_t size) { return index >= 0 && static_cast<std::size_t>(index) < size; }
 
-bool isFinite(const mat4& m) {
-  for (std::size_t column = 0; column < 4; ++column)
-    if (!quintet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
-  return true;
-}
-
 void checkGeometry(const Scene& scene, const Geometry& geometry, const std::string& name) {
   const std::size_t count = geometry.positions.size();
   const auto checkLength = [&](std::size_t length, const char* attribute) {
@@ -54,7 +48,7 @@ void checkGeometry(const Scene& scene, const Geometry& geometry, const std::stri
     if (std::max({t.x, t.y, t.z}) >= count)
       fail("{}.triangles[{}]: vertex {} of {}", name, i, std::max({t.x, t.y, t.z}), count);
   }
-  const auto wrong = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return quintet::isFinite(p); });
+  const auto wrong = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return isFinite(p); });
   if (wrong != geometry.positions.end()) fail("{}.positions[{}]: not finite", name, wrong - geometry.positions.begin());
 }
 
@@ -97,7 +91,7 @@ void checkPrimitiveSet(const Scene& scene, const PrimitiveSet& set, const std::s
   for (std::size_t i = 0; i < set.trees.size(); ++i) checkTree(set, set.trees[i], fmt::format("{}.trees[{}]", name, i));
   for (std::size_t i = 0; i < set.boxes.size(); ++i) {
     const Bounds3& box = set.boxes[i];
-    if (!quintet::isFinite(box.min) || !quintet::isFinite(box.max)) fail("{}.boxes[{}]: not finite", name, i);
+    if (!isFinite(box.min) || !isFinite(box.max)) fail("{}.boxes[{}]: not finite", name, i);
     if (box.empty()) fail("{}.boxes[{}]: the minimum is above the maximum", name, i);
   }
 }
@@ -114,7 +108,7 @@ void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) 
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Keyframe& key = keys[i];
     const glm::quat& q = key.rotation;
-    if (!std::isfinite(key.frame) || !quintet::isFinite(key.translation) || !quintet::isFinite(key.scale) ||
+    if (!std::isfinite(key.frame) || !isFinite(key.translation) || !isFinite(key.scale) ||
         !(std::abs(glm::length(q) - 1.0f) < 1e-3f))
       fail("{}[{}]: not finite, or the rotation is not normalized", name, i);
     if (i > 0 && !(key.frame > keys[i - 1].frame)) fail("{}[{}]: frames must ascend", name, i);
@@ -143,7 +137,7 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
     if (!inRange(use.texture, scene.textures.size()))
       fail("{}: texture {} of {}", name, use.texture, scene.textures.size());
     if (!inRange(use.uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use.uvSet, kMaxUvSets);
-    if (!quintet::isFinite(vec3(use.offset, use.rotation)) || !quintet::isFinite(vec3(use.scale, 0.0f)))
+    if (!isFinite(vec3(use.offset, use.rotation)) || !isFinite(vec3(use.scale, 0.0f)))
       fail("{}: the transform of texture {} is not finite", name, use.texture);
   }
   const auto checkRange = [&](float value, float min, float max, const char* property) {
@@ -221,7 +215,7 @@ void validateCamera(const Scene& scene, std::size_t index) {
 
 void validateLight(const Scene& scene, std::size_t index) {
   const Light& light = scene.lights[index];
-  if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) || !quintet::isFinite(light.direction))
+  if (!isFinite(light.intensity) || !isFinite(light.position) || !isFinite(light.direction))
     fail("{}: not finite", objectName("lights", index, light.name));
   if (!(light.range > 0.0f)) fail("{}: the range must be above 0", objectName("lights", index, light.name));
   constexpr float kRounding = 1e-6f;

@@ -28,8 +28,6 @@ vec4 toValue(const TomlReader& reader, const TomlValue& value, const KeyTrack& t
   return result;
 }
 
-bool isFinite(const vec4& v) { return quintet::isFinite(vec3(v)) && std::isfinite(v.w); }
-
 // The slope of the line between the neighbors of a keyframe (Catmull and Rom 1974, for times that are not uniform); at
 // the ends, that of the line to the only neighbor.
 vec4 automaticTangent(const std::vector<float>& seconds, const std::vector<vec4>& values, std::size_t i) {

@@ -16,12 +16,6 @@ using glm::dmat4;
 using glm::dquat;
 using glm::dvec3;
 
-bool isFinite(const mat4& m) {
-  for (int column = 0; column < 4; ++column)
-    if (!quintet::isFinite(vec3(m[column]))) return false;
-  return true;
-}
-
 vec3 readScale(const TomlReader& reader, const TomlValue& value) {
   const vec3 scale = value.isNumber() ? vec3(reader.toNumber(value, "scale")) : reader.toTriple(value, "scale");
   if (scale.x == 0.0f || scale.y == 0.0f || scale.z == 0.0f)

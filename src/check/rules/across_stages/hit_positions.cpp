@@ -186,11 +186,6 @@ Id withoutOffset(const spirv::Module& module, Id t) {
   return t;
 }
 
-bool loads(const spirv::Module& module, Id value, spv::BuiltIn builtIn) {
-  const spirv::Instruction* i = module.definition(value);
-  return i && spirv::loadsBuiltIn(module, *i, builtIn);
-}
-
 class HitPositions {
  public:
   HitPositions(const CheckInput& input, Report& report) : graph_(input.graph), report_(report) {}
@@ -211,10 +206,10 @@ class HitPositions {
   // gl_WorldRayOriginEXT + gl_HitTEXT * normalize(gl_WorldRayDirectionEXT)
   void checkIncoming(std::size_t stage, const Position& position) {
     const spirv::Module& module = graph_.stages[stage].facts->module();
-    if (!loads(module, withoutOffset(module, position.t), spv::BuiltIn::RayTmaxKHR)) return;
-    if (!loads(module, position.origin, spv::BuiltIn::WorldRayOriginKHR)) return;
+    if (!spirv::loadsBuiltIn(module, withoutOffset(module, position.t), spv::BuiltIn::RayTmaxKHR)) return;
+    if (!spirv::loadsBuiltIn(module, position.origin, spv::BuiltIn::WorldRayOriginKHR)) return;
     const Id direction = normalizedOf(module, position.direction);
-    if (direction == 0 || !loads(module, direction, spv::BuiltIn::WorldRayDirectionKHR)) return;
+    if (direction == 0 || !spirv::loadsBuiltIn(module, direction, spv::BuiltIn::WorldRayDirectionKHR)) return;
     for (const TraceSite& site : graph_.traces) {
       const bool reaches = std::ranges::any_of(
           site.edges, [&](const Edge& edge) { return edge.role == Role::closestHit && edge.stage == stage; });
@@ -287,7 +282,7 @@ class HitPositions {
       for (const spirv::AccessFacts& write : hit.accesses()) {
         if (!write.writes || write.variable != payload->id || !write.leaves.covers(read->leaves.first)) continue;
         const spirv::ValuePart value = spirv::originOf(hit.module(), hit.storedValue(write, read->leaves.first));
-        if (value.id == 0 || !loads(hit.module(), value.id, spv::BuiltIn::RayTmaxKHR)) return false;
+        if (value.id == 0 || !spirv::loadsBuiltIn(hit.module(), value.id, spv::BuiltIn::RayTmaxKHR)) return false;
         stored = true;
       }
     }

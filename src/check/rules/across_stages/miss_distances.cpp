@@ -18,12 +18,9 @@ namespace {
 using spirv::Id;
 using spv::Op;
 
-bool loads(const spirv::Module& module, Id value, spv::BuiltIn builtIn) {
-  const spirv::Instruction* i = module.definition(value);
-  return i && spirv::loadsBuiltIn(module, *i, builtIn);
+bool isTmax(const spirv::Module& module, Id value) {
+  return spirv::loadsBuiltIn(module, value, spv::BuiltIn::RayTmaxKHR);
 }
-
-bool isTmax(const spirv::Module& module, Id value) { return loads(module, value, spv::BuiltIn::RayTmaxKHR); }
 
 // True for origin + t * direction of the incoming ray.
 bool isEndOfRay(const spirv::Module& module, Id value) {
@@ -32,8 +29,8 @@ bool isEndOfRay(const spirv::Module& module, Id value) {
   for (const std::size_t k : {0u, 1u}) {
     const spirv::Instruction* step = module.definition(sum->at(k));
     if (step && step->op == Op::OpVectorTimesScalar && isTmax(module, step->at(1)) &&
-        loads(module, step->at(0), spv::BuiltIn::WorldRayDirectionKHR) &&
-        loads(module, sum->at(1 - k), spv::BuiltIn::WorldRayOriginKHR))
+        spirv::loadsBuiltIn(module, step->at(0), spv::BuiltIn::WorldRayDirectionKHR) &&
+        spirv::loadsBuiltIn(module, sum->at(1 - k), spv::BuiltIn::WorldRayOriginKHR))
       return true;
   }
   return false;
