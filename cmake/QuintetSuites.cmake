@@ -25,6 +25,10 @@ endif()
 set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
+# Suites that compare histograms of many samples with integrals, for every lobe. They take a tenth of the time of all
+# suites. 'make test' leaves them to CI and `ctest --preset release -L statistics`.
+set(QUINTET_STATISTICS_SUITES gpu.BsdfFurnace gpu.BsdfSampling)
+
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
 
@@ -84,6 +88,9 @@ function(quintet_add_suites TARGET LABEL TIMEOUT)
     endif()
     if(name STREQUAL gpu.GpuContext)  # tests the variables that the library sets for lavapipe
       set_tests_properties(${name} PROPERTIES ENVIRONMENT QUINTET_VALIDATE=1)
+    endif()
+    if(name IN_LIST QUINTET_STATISTICS_SUITES)
+      set_property(TEST ${name} APPEND PROPERTY LABELS statistics)
     endif()
     if(name IN_LIST QUINTET_SERIAL_SUITES)
       set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)

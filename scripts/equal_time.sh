@@ -5,14 +5,15 @@
 #   scripts/equal_time.sh A B [OPTION…]         A and B are quintet binaries; see quintet_equal_time --help
 #   scripts/equal_time.sh --pack FOLDER A B     pack everything for another machine; run FOLDER/run [OPTION…] there
 #
-# Environment: BUILD  folder of quintet_equal_time and quintet_make_scenes (default: build/release/bin)
+# Environment: BUILD  folder of quintet_equal_time and quintet_make_scenes (default: build/release/bin). Configure it with
+#                     -DQUINTET_BENCHMARKS=ON.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${BUILD:-$root/build/release/bin}
 
 usage() {
-    sed -n '3,8s/^# \?//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '3,9s/^# \?//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 }
 
