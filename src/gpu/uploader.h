@@ -28,6 +28,7 @@ class Uploader {
   Uploader(const Uploader&) = delete;
   Uploader& operator=(const Uploader&) = delete;
 
+  VkDeviceSize stagingBytes() const { return staging_.size(); }
   void upload(const Buffer& destination, std::span<const std::byte> data, VkDeviceSize offset = 0);
   // Uploads all pixels, in tightly packed rows, and leaves the image in the layout SHADER_READ_ONLY_OPTIMAL.
   void upload(const Image& destination, std::span<const std::byte> pixels);

@@ -117,19 +117,22 @@ void DeviceScene::uploadLightTable(LightTable& table) {
                          std::as_bytes(std::span(table.nodes)), std::as_bytes(std::span(table.slots))};
   VkDeviceSize total = 0;
   for (const std::span<const std::byte>& part : bytes) total += part.size();
-  gpu::Uploader uploader(context_, std::min(2 * total, kLightStaging));
+  std::unique_ptr<gpu::Uploader> uploader = std::move(lightUploader_);
+  const VkDeviceSize staging = std::min(2 * total, kLightStaging);
+  if (!uploader || uploader->stagingBytes() < staging) uploader = std::make_unique<gpu::Uploader>(context_, staging);
   const auto store = [&](gpu::Buffer& buffer, std::span<const std::byte> data, const char* name) {
     // A buffer is used again unless that wastes much memory: dragging a value edits lights many times a second.
     if (!buffer || buffer.size() < data.size() || buffer.size() > 2 * data.size() + kMinLightBuffer)
       buffer = gpu::Buffer(context_, {.size = data.size(), .name = name});
-    uploader.upload(buffer, data);
+    uploader->upload(buffer, data);
     return buffer.address();
   };
   frame_.lights = store(lights_, bytes[0], "lights");
   frame_.lightTable = store(lightTable_, bytes[1], "light table");
   frame_.lightNodes = store(lightNodes_, bytes[2], "light nodes");
   frame_.lightSlots = store(lightSlots_, bytes[3], "light slots");
-  uploader.flush();
+  uploader->flush();
+  if (lightBuilder_) lightUploader_ = std::move(uploader);
   frame_.lightCount = static_cast<std::uint32_t>(table.entries.size());
   frame_.environmentLight = table.environmentLight;
 }

@@ -176,6 +176,7 @@ class DeviceScene {
   };
   std::optional<AnimatedEnvironment> animatedEnvironment_;
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
+  std::unique_ptr<gpu::Uploader> lightUploader_;   // for light tables that change; new staging memory is slow to fill
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
   std::optional<LightTableBuilder> lightBuilder_;  // only if lights move, or for edits
   LightTable lightTables_;                         // of the last edit, for its memory; empty above kKeptLights
