@@ -2,8 +2,11 @@
 # Precompiled headers: the headers that most sources include and that rarely change. They only save compile time. Sources
 # include what they use, and CI compiles every header alone (tests/headers/run).
 #
-# quintet_precompile(TARGET)        the standard library, fmt and glm
+# quintet_precompile(TARGET)        the standard library, fmt and glm, in the target QUINTET_CODE_PRECOMPILED
 # quintet_precompile(TARGET TESTS)  also GoogleTest and nlohmann-json, in the target QUINTET_TEST_PRECOMPILED
+#
+# Since GCC 13, all users of a precompiled header require its optimization level. So folders with a different level set a
+# different name.
 option(QUINTET_PRECOMPILED "Precompile frequent headers" ON)
 
 set(QUINTET_PRECOMPILED_HEADERS
@@ -38,10 +41,10 @@ function(quintet_precompile TARGET)
     # A precompiled header requires the same code model in all its users, executables and libraries.
     set_target_properties(${TARGET} ${QUINTET_TEST_PRECOMPILED} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   else()
-    if(NOT TARGET quintet_precompiled)
-      quintet_add_precompiled(quintet_precompiled LINK fmt::fmt glm::glm)
+    if(NOT TARGET ${QUINTET_CODE_PRECOMPILED})
+      quintet_add_precompiled(${QUINTET_CODE_PRECOMPILED} LINK fmt::fmt glm::glm)
     endif()
-    target_precompile_headers(${TARGET} REUSE_FROM quintet_precompiled)
+    target_precompile_headers(${TARGET} REUSE_FROM ${QUINTET_CODE_PRECOMPILED})
     # A precompiled header requires the same code model in all its users, and libraries are compiled with -fPIC.
     get_target_property(type ${TARGET} TYPE)
     if(type STREQUAL EXECUTABLE)
