@@ -25,9 +25,10 @@ endif()
 set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
-# Suites that compare histograms of many samples with integrals, for every lobe. They take a tenth of the time of all
-# suites. 'make test' leaves them to CI and `ctest --preset release -L statistics`.
-set(QUINTET_STATISTICS_SUITES gpu.BsdfFurnace gpu.BsdfSampling)
+# The longest suites: those that compare histograms of many samples with integrals, for every lobe or stack of panes, and
+# the one that inserts a bug of each kind into programs. Together they take a fifth of the time of all suites. 'make test'
+# leaves them to CI and `ctest --preset release -L long`.
+set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
@@ -70,6 +71,9 @@ function(quintet_add_suite_tests OUT TARGET LABEL TIMEOUT)
     quintet_suite_cost(cost ${name})
     add_test(NAME ${name} COMMAND ${TARGET} --gtest_filter=${suite}.*:*/${suite}.*:${suite}/*)
     set_tests_properties(${name} PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT} COST ${cost})
+    if(name IN_LIST QUINTET_LONG_SUITES)
+      set_property(TEST ${name} APPEND PROPERTY LABELS long)
+    endif()
   endforeach()
   set(${OUT} ${names} PARENT_SCOPE)
 endfunction()
@@ -88,9 +92,6 @@ function(quintet_add_suites TARGET LABEL TIMEOUT)
     endif()
     if(name STREQUAL gpu.GpuContext)  # tests the variables that the library sets for lavapipe
       set_tests_properties(${name} PROPERTIES ENVIRONMENT QUINTET_VALIDATE=1)
-    endif()
-    if(name IN_LIST QUINTET_STATISTICS_SUITES)
-      set_property(TEST ${name} APPEND PROPERTY LABELS statistics)
     endif()
     if(name IN_LIST QUINTET_SERIAL_SUITES)
       set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
