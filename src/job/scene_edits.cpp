@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "check/scene_facts.h"
 #include "job/identity.h"
 #include "job/render_job.h"
+#include "scene/animation/pose.h"
 #include "scene/geometry/tangents.h"
 #include "scene/model/content_hash.h"
 #include "scene/model/validate.h"
@@ -30,6 +33,26 @@ struct DeviceForm {
 DeviceForm deviceForm(const scene::Scene& scene) {
   // Materials do not affect what depends on the environment.
   return {render::sceneFeatures(scene, scene::Environment{}), check::sceneFacts(scene)};
+}
+
+// What the animation of a scene sets at a frame, in objects that are visible at that frame or not.
+scene::Pose poseOfAllObjects(const scene::Scene& scene, double frame) {
+  scene::Pose pose = scene::poseAt(scene.nodeAnimation.get(), frame);
+  pose.visible.assign(pose.visible.size(), true);
+  return pose;
+}
+
+// The values of material `index` that change.
+std::span<const scene::AnimatedValue> valuesOfMaterial(const scene::Scene& scene, std::size_t index) {
+  if (!scene.nodeAnimation) return {};
+  const auto& animated = scene.nodeAnimation->materials;
+  const auto found = std::ranges::find(animated, static_cast<int>(index), &scene::AnimatedMaterial::material);
+  return found == animated.end() ? std::span<const scene::AnimatedValue>() : found->values;
+}
+
+// An edit whose result the animation replaces would have no effect.
+[[noreturn]] void failAnimated(const char* kind, const std::string& name) {
+  throw UsageError(fmt::format("the animation of {} '{}' sets the value that this edit changes", kind, name));
 }
 
 }  // namespace
@@ -104,6 +127,10 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
   const scene::Material before = std::exchange(scene.materials[index], material);
   try {
     scene::validateMaterial(scene, index);
+    const std::span<const scene::AnimatedValue> values = valuesOfMaterial(scene, index);
+    const scene::Pose pose = poseOfAllObjects(scene, shownFrame());
+    if (material != before && materialAt(material, values, pose) == materialAt(before, values, pose))
+      failAnimated("material", material.name);
   } catch (const Error& error) {
     scene.materials[index] = before;
     throw UsageError(error.what());
@@ -147,6 +174,8 @@ void RenderJob::setLight(std::size_t index, const scene::Light& light) {
   const scene::Light before = std::exchange(scene.lights[index], light);
   try {
     scene::validateLight(scene, index);
+    const scene::Pose pose = poseOfAllObjects(scene, shownFrame());
+    if (light != before && lightAt(light, pose) == lightAt(before, pose)) failAnimated("light", light.name);
   } catch (const Error& error) {
     scene.lights[index] = before;
     throw UsageError(error.what());

@@ -46,6 +46,7 @@ struct Animation {
 struct AnimatedValue {
   std::size_t property = 0;  // index in the table of the kind of object (animation/properties.h)
   std::size_t value = 0;     // index in NodeAnimation::values
+  bool operator==(const AnimatedValue&) const = default;
 };
 
 struct AnimatedMaterial {

@@ -108,6 +108,7 @@ struct Material {
   vec3 multiscatterColor{0.0f};                // KHR_materials_volume_scatter, color after many scatterings, [0,1]
   float scatterAnisotropy = 0.0f;              // (-1,1), of the phase function; above 0 scatters forwards
   float dielectricPriority = 0.0f;             // where solids overlap, the highest one fills the space
+  bool operator==(const Material&) const = default;
 };
 
 // A list of triangles. Every attribute is empty or has positions.size() elements.
@@ -210,6 +211,7 @@ struct Light {
   mat4 placedFromRoot{1.0f};          // applied after the node's transform
   std::vector<AnimatedValue> values;  // sorted by property; the light is that of frame 0
   bool animated() const { return node != kNone || visibleNode != kNone || !values.empty(); }
+  bool operator==(const Light&) const = default;
 };
 
 // Equirectangular radiance. Texture coordinates of direction d: u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π from the

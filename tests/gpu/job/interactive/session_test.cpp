@@ -308,6 +308,23 @@ TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
   }
 }
 
+// Keyframes set the position of the light and the roughness of the material.
+TEST_F(SessionTest, RejectsEditsOfAnimatedProperties) {
+  writeFile(folder_ / "a.scene.toml",
+            litScene() +
+                "[[light]]\nname = \"moving\"\ntype = \"point\"\nposition = [0, 4, 4]\nintensity = 5.0\n"
+                "keyframes = [{ time = 0.0, position = [0, 4, 4] }, { time = 1.0, position = [4, 4, 4] }]\n"
+                "[[material]]\nname = \"polished\"\nroughness = 0.2\n"
+                "keyframes = [{ time = 0.0, roughness = 0.2 }, { time = 1.0, roughness = 0.8 }]\n");
+  const auto session = makeSession(request());
+  EXPECT_THROW(session->apply(EditMaterial{"polished", {{"roughness", {0.5}}}}), UsageError);
+  EXPECT_THROW(session->apply(EditLight{"moving", {{"position", {1, 1, 1}}}}), UsageError);
+  EXPECT_FALSE(session->canUndo());
+  session->apply(EditMaterial{"polished", {{"baseColor", {0.1, 0.8, 0.1}}}});
+  session->apply(EditLight{"moving", {{"intensity", {2}}}});
+  EXPECT_TRUE(session->canUndo());
+}
+
 // The members of a JSON object are read in alphabetical order.
 TEST_F(SessionTest, LightPropertiesDoNotDependOnTheirOrder) {
   writeFile(folder_ / "a.scene.toml", replaced(litScene(), "intensity = 20.0", "intensity = 0.0"));
