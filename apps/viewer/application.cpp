@@ -368,11 +368,12 @@ void Application::drawImage() {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ImagePlacement& at = state_.placement;
   const vec2 end = at.origin + at.scale * vec2(at.size);
-  list.AddImage(textureId(kImageTexture), {at.origin.x, at.origin.y}, {end.x, end.y});
-  if (!state_.display->reference.bytes || state_.controls.compare != CompareMode::split) return;
-  const float split = state_.controls.split;
-  const float x = std::round(glm::mix(at.origin.x, end.x, split));
-  list.AddImage(textureId(kReferenceTexture), {x, at.origin.y}, {end.x, end.y}, {split, 0.0f}, {1.0f, 1.0f});
+  const bool splits = state_.display->reference.bytes && state_.controls.compare == CompareMode::split;
+  const float split = splits ? state_.controls.split : 1.0f;
+  const float x = splits ? std::round(glm::mix(at.origin.x, end.x, split)) : end.x;
+  list.AddImage(textureId(kImageTexture), {at.origin.x, at.origin.y}, {x, end.y}, {0.0f, 0.0f}, {split, 1.0f});
+  if (splits)
+    list.AddImage(textureId(kReferenceTexture), {x, at.origin.y}, {end.x, end.y}, {split, 0.0f}, {1.0f, 1.0f});
 }
 
 void Application::sidePanel(const Area& area) {

@@ -49,12 +49,35 @@ DisplayPixels toneMapped(const io::Image& image, const DisplaySettings& settings
   return pixelsOf(render::toDisplay(image, settings.toneMap, static_cast<float>(settings.exposure), false));
 }
 
-// As the image: linear premultiplied RGBA floats of this size.
-io::Image matching(const io::Image& reference, const io::Image& image) {
-  io::Image result = io::toPremultiplied(io::toChannels(reference, 4));
-  if (result.width != image.width || result.height != image.height)
-    result = io::toPremultiplied(io::resizeBox(result, image.width, image.height));
-  return result;
+struct FittedReference {
+  io::Image image;      // linear premultiplied RGBA floats, of the size of the rendered image
+  double coverage = 1;  // share of the pixels that the reference covers, (0,1]
+};
+
+// Scales the reference until it fits, and centers it. Pixels beside it, of a reference with another aspect ratio, are
+// those of `background`, or transparent.
+FittedReference fitted(const io::Image& reference, const io::Image& image, const io::Image* background) {
+  io::Image scaled = io::toPremultiplied(io::toChannels(reference, 4));
+  if (scaled.width == image.width && scaled.height == image.height) return {std::move(scaled), 1.0};
+  const auto side = [](std::uint64_t full, std::uint64_t part, std::uint64_t whole) {
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>((full * part + whole / 2) / whole, 1, full));
+  };
+  const bool isWider = std::uint64_t{scaled.width} * image.height >= std::uint64_t{image.width} * scaled.height;
+  const uvec2 size = isWider
+                         ? uvec2(image.width, std::min(image.height, side(image.width, scaled.height, scaled.width)))
+                         : uvec2(std::min(image.width, side(image.height, scaled.width, scaled.height)), image.height);
+  scaled = io::toPremultiplied(io::resizeBox(scaled, size.x, size.y));
+  if (size == uvec2(image.width, image.height)) return {std::move(scaled), 1.0};
+  io::Image result =
+      background ? *background : io::makeImage(image.width, image.height, 4, io::PixelType::f32, image.encoding);
+  const uvec2 corner = (uvec2(image.width, image.height) - size) / 2u;
+  const float* from = scaled.samples<float>().data();
+  float* to = result.samples<float>().data();
+  for (std::uint32_t y = 0; y < size.y; ++y)
+    std::copy_n(from + std::size_t{4} * y * size.x, std::size_t{4} * size.x,
+                to + 4 * (std::size_t{corner.y + y} * image.width + corner.x));
+  const double covered = static_cast<double>(size.x) * size.y;
+  return {std::move(result), covered / static_cast<double>(image.pixelCount())};
 }
 
 // The display values as linear light, for FLIP.
@@ -123,23 +146,23 @@ Display makeDisplay(const io::Image& image, const io::Image* reference, const Di
     result.image = shown(image);
     return result;
   }
-  const io::Image other = matching(*reference, image);
   if (compare == CompareMode::split) {
     result.image = shown(image);
-    result.reference = shown(other);
+    result.reference = shown(fitted(*reference, image, nullptr).image);
     return result;
   }
+  const auto [other, coverage] = fitted(*reference, image, &image);  // no difference beside the reference
   if (compare == CompareMode::difference) {
     const std::vector<float> errors = differences(image, other);
     const FalseColorRange range{0.0, settings.range.most, false};
     result.image = colored(image, [&](const float*, std::size_t i) { return range.position(errors[i]); });
-    result.error = meanOf(errors);
+    result.error = meanOf(errors) / coverage;
     return result;
   }
   const io::Image map = io::flipMap(displayedLight(image, settings), displayedLight(other, settings));
   const auto errors = map.samples<float>();
   result.image = colored(image, [&](const float*, std::size_t i) { return static_cast<double>(errors[i]); });
-  result.error = meanOf({errors.begin(), errors.end()});
+  result.error = meanOf({errors.begin(), errors.end()}) / coverage;
   return result;
 }
 

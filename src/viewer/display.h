@@ -54,8 +54,9 @@ struct Display {
   std::optional<double> error;               // mean of the difference or of FLIP; with CompareMode::difference and flip
 };
 
-// `image`: linear premultiplied RGBA floats. `reference`: any image; resized to that of `image` if necessary; null if
-// there is none, and CompareMode is then ignored.
+// `image`: linear premultiplied RGBA floats. `reference`: any image; null if there is none, and CompareMode is then
+// ignored. A reference of another size is scaled to fit, and centered. If its aspect ratio differs, the pixels beside it
+// are transparent in DisplayPixels::reference, and do not count in `error`.
 Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings);
 
 }  // namespace quintet::viewer

@@ -113,6 +113,26 @@ TEST(ViewerDisplay, ResizesTheReference) {
       << "the mean of the four pixels is 0.5";
 }
 
+// A reference of 2x2 pixels has half of the width of an image of 4x2 pixels.
+TEST(ViewerDisplay, KeepsTheAspectRatioOfTheReference) {
+  const io::Image image = makeImage(4, 2, std::vector<vec4>(8, vec4(0.5f, 0.5f, 0.5f, 1.0f)));
+  const io::Image reference = makeImage(2, 2, {{0, 0, 0, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1, 1}});
+  DisplaySettings settings;
+  settings.compare = CompareMode::split;
+  const DisplayPixels shown = makeDisplay(image, &reference, settings).reference;
+  EXPECT_EQ(shown.size, uvec2(4, 2));
+  EXPECT_EQ(pixelOf(shown, 0)[3], 0) << "beside the reference";
+  EXPECT_EQ(pixelOf(shown, 1), (std::vector<int>{0, 0, 0, 255}));
+  EXPECT_EQ(pixelOf(shown, 6), (std::vector<int>{255, 255, 255, 255}));
+  EXPECT_EQ(pixelOf(shown, 7)[3], 0);
+  settings.compare = CompareMode::difference;
+  settings.range.most = 1.0;
+  const Display difference = makeDisplay(image, &reference, settings);
+  EXPECT_EQ(pixelOf(difference.image, 0), bytesOf(falseColor(0.0)));
+  EXPECT_EQ(pixelOf(difference.image, 1), bytesOf(falseColor(0.5)));
+  EXPECT_DOUBLE_EQ(difference.error.value(), 0.5) << "of the four pixels of the reference";
+}
+
 TEST(ViewerDisplay, IgnoresComparisonsWithoutAReference) {
   const io::Image image = makeImage(1, 1, {{1, 1, 1, 1}});
   DisplaySettings settings;
