@@ -128,10 +128,14 @@ int InstanceBuilder::animatedPose(int index) {
 void InstanceBuilder::addSkinned(int index) {
   const auto i = static_cast<std::size_t>(index);
   const tinygltf::Node& node = document_.model.nodes[i];
-  const int pose = animation_.movesSkin(document_, index)
-                       ? animatedPose(index)
-                       : newPose(node.mesh, {node.weights, jointMatrices(index), tree_.worldFromNode[i]});
-  addInstance(index, pose, mat4(1.0f));
+  if (animation_.movesSkin(document_, index)) {
+    addInstance(index, animatedPose(index), mat4(1.0f));
+    return;
+  }
+  // Before the aggregate: GCC 12 destroys the members of a temporary of ?: although an exception left it incomplete
+  // (GltfSkin.RejectsInconsistentSkins with AddressSanitizer).
+  std::vector<mat4> joints = jointMatrices(index);
+  addInstance(index, newPose(node.mesh, {node.weights, std::move(joints), tree_.worldFromNode[i]}), mat4(1.0f));
 }
 
 void InstanceBuilder::addRigid(int index, const Transform& transform) {
