@@ -319,7 +319,7 @@ void Renderer::sceneChanged() {
 }
 
 void Renderer::setSize(uvec2 size) {
-  assert(!settings_.instrument && !settings_.rayRecords && !settings_.log);
+  assert(!settings_.instrument && !settings_.rayRecords);
   RenderSettings settings = settings_;
   settings.width = size.x;
   settings.height = size.y;

@@ -75,6 +75,9 @@ TEST(CheckBuiltIn, ReportsNothingWithoutFeatures) {
 
 // The check runs at each start. Without compilation it takes tens of milliseconds of processor time.
 TEST(CheckBuiltIn, IsFast) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "sanitizers make it several times slower";
+#endif
   const program::Program program = program::loadProgram("pathtracer");
   const program::CompiledProgram compiled = compile(program, checkCompiler(), {});
   double seconds = 1e9;
