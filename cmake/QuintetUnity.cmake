@@ -8,5 +8,7 @@ option(QUINTET_UNITY "Compile sources in groups" ON)
 function(quintet_unity TARGET)
   if(QUINTET_UNITY)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    # GCC assumes that a file which is included can be included twice.
+    target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()

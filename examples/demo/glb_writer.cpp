@@ -17,8 +17,7 @@ using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "glTF's buffers are little-endian");
 
 // glTF's constants for component types, targets, filters and wrap modes.
-constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
-constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963, kNoTarget = 0;
+constexpr int kNoTarget = 0;  // of a buffer view
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
 
 // The shortest decimal that reads back as the same float.

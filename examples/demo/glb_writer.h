@@ -18,6 +18,10 @@ namespace quintet::demo {
 
 inline constexpr int kNoTexture = -1;
 
+// Constants of glTF: types of components, and targets of buffer views.
+inline constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+inline constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+
 // The glTF material with the defaults of the specification, except for `metallic`.
 struct Material {
   std::string name;

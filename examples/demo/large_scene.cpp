@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/math.h"
 #include "base/parallel.h"
+#include "demo/glb_writer.h"
 #include "demo/noise.h"
 #include "io/codec.h"
 
@@ -25,7 +26,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRowsPerPiece = 64;
-constexpr int kFloat = 5126, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 
 // Waves on the unit sphere: radius 1 + Σ amplitude · sin(frequency · p + phase).
 struct Wave {

@@ -17,6 +17,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace quintet {
@@ -30,6 +31,11 @@ using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+
+// Returns the smallest multiple of `alignment` (at least 1) that is not less than `value`.
+constexpr std::uint64_t alignUp(std::uint64_t value, std::uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
 
 inline constexpr float kPi = 3.14159265358979323846f;
 

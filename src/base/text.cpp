@@ -37,6 +37,12 @@ std::string printable(std::string_view text) {
   return result;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr const char* kBlank = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
+}
+
 std::string lowerCase(std::string_view text) {
   std::string result(text);
   for (char& c : result)

@@ -15,6 +15,9 @@ std::string printable(std::string_view text);
 // Returns the text with the letters A to Z in lower case.
 std::string lowerCase(std::string_view text);
 
+// Returns the text without spaces, tabs and line ends at both ends.
+std::string_view trimmed(std::string_view text);
+
 // Returns the text, in single quotes where a shell would need them.
 std::string shellQuoted(std::string_view text);
 

@@ -19,12 +19,6 @@ namespace {
 constexpr std::string_view kPrefix = "quintet:", kVerb = "allow";
 constexpr std::string_view kForm = "quintet: allow Q604 reason";
 
-std::string_view trimmed(std::string_view text) {
-  constexpr const char* kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
-}
-
 // Removes the first word, which a blank or a comma ends, from the text and returns it.
 std::string_view takeWord(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_of(" \t,"), text.size());

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::uint32_t kMaxTextures = 16;
 // Sets of images that were replaced are freed when the frames that use them have ended.
-constexpr std::uint32_t kMaxSets = 4 * kMaxTextures;
+constexpr std::uint32_t kMaxDrawListSets = 4 * kMaxTextures;
 
 // As in triangles.vert: position in clip space = scale · pixels - 1.
-struct PushConstants {
+struct DrawListConstants {
   float scale[2];
 };
 
-constexpr VkVertexInputAttributeDescription kAttributes[] = {
+constexpr VkVertexInputAttributeDescription kDrawListAttributes[] = {
     {0, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawVertex, x)},
     {1, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawVertex, u)},
     {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(DrawVertex, color)},
@@ -45,9 +45,9 @@ DrawListRenderer::DrawListRenderer(Context& context, VkFormat format, std::span<
       pipeline_(context, {.vertexShader = vertexShader,
                           .fragmentShader = fragmentShader,
                           .input = {0, sizeof(DrawVertex), VK_VERTEX_INPUT_RATE_VERTEX},
-                          .attributes = kAttributes,
-                          .constantBytes = sizeof(PushConstants),
-                          .maxSets = kMaxSets,
+                          .attributes = kDrawListAttributes,
+                          .constantBytes = sizeof(DrawListConstants),
+                          .maxSets = kMaxDrawListSets,
                           .format = format,
                           .purpose = "draw the window"}) {}
 
@@ -129,8 +129,8 @@ void DrawListRenderer::draw(Commands& commands, const RenderTarget& target, cons
 void DrawListRenderer::bind(Commands& commands, const RenderTarget& target, const FrameBuffers& frame) {
   pipeline_.bind(commands, frame.vertices, target.size);
   context_.vk().vkCmdBindIndexBuffer(commands.handle(), frame.indices.handle(), 0, VK_INDEX_TYPE_UINT16);
-  pipeline_.setConstants(commands, PushConstants{{2.0f / static_cast<float>(target.size.width),
-                                                  2.0f / static_cast<float>(target.size.height)}});
+  pipeline_.setConstants(commands, DrawListConstants{{2.0f / static_cast<float>(target.size.width),
+                                                      2.0f / static_cast<float>(target.size.height)}});
 }
 
 void DrawListRenderer::record(Commands& commands, const RenderTarget& target, const DrawList& list,

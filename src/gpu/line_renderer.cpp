@@ -17,11 +17,11 @@ namespace quintet::gpu {
 namespace {
 
 // Sets of depth images that were replaced are freed when the frames that use them have ended.
-constexpr std::uint32_t kMaxSets = 16;
+constexpr std::uint32_t kMaxLineSets = 16;
 constexpr std::uint32_t kVerticesPerLine = 6;
 
 // As in lines.vert and lines.frag.
-struct PushConstants {
+struct LineConstants {
   float scale[2];        // 2 / size of the target
   float depthOrigin[2];  // pixels
   float depthScale;
@@ -31,7 +31,7 @@ struct PushConstants {
   std::uint32_t outline;  // 1: the outlines are drawn
 };
 
-constexpr VkVertexInputAttributeDescription kAttributes[] = {
+constexpr VkVertexInputAttributeDescription kLineAttributes[] = {
     {0, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Line, ax)},
     {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Line, depthA)},
     {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(Line, color)},
@@ -57,9 +57,9 @@ LineRenderer::LineRenderer(Context& context, VkFormat format, std::span<const st
       pipeline_(context, {.vertexShader = vertexShader,
                           .fragmentShader = fragmentShader,
                           .input = {0, sizeof(Line), VK_VERTEX_INPUT_RATE_INSTANCE},
-                          .attributes = kAttributes,
-                          .constantBytes = sizeof(PushConstants),
-                          .maxSets = kMaxSets,
+                          .attributes = kLineAttributes,
+                          .constantBytes = sizeof(LineConstants),
+                          .maxSets = kMaxLineSets,
                           .format = format,
                           .purpose = "draw lines"}) {
   setDepth({}, nullptr);
@@ -118,7 +118,7 @@ void LineRenderer::record(Commands& commands, const RenderTarget& target, const 
   const auto width = static_cast<float>(target.size.width);
   const auto height = static_cast<float>(target.size.height);
   vk.vkCmdSetScissor(commands.handle(), 0, 1, &rectangle);
-  PushConstants constants{{2.0f / width, 2.0f / height},
+  LineConstants constants{{2.0f / width, 2.0f / height},
                           {prepared_.depthX, prepared_.depthY},
                           prepared_.depthScale,
                           prepared_.relativeBias,

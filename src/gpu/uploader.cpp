@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/math.h"
 #include "base/parallel.h"
 #include "gpu/commands.h"
 #include "gpu/error.h"
@@ -14,8 +15,6 @@ namespace {
 // A half holds at least one row of the largest image in the widest format.
 constexpr VkDeviceSize kMinHalfBytes = VkDeviceSize{1} << 20;
 constexpr VkDeviceSize kCopyAlignment = 16;  // a multiple of every texel size
-
-VkDeviceSize alignUp(VkDeviceSize value) { return (value + kCopyAlignment - 1) / kCopyAlignment * kCopyAlignment; }
 
 }  // namespace
 
@@ -31,7 +30,7 @@ void Uploader::stage(VkDeviceSize bytes, VkDeviceSize pieceBytes, const Write& w
     const VkDeviceSize offset = half_ * halfBytes_ + used_;
     write(done, std::span(staging_.mapped() + offset, length));
     add(offset, done, length);
-    used_ += alignUp(length);
+    used_ += alignUp(length, kCopyAlignment);
     done += length;
   }
 }
@@ -74,7 +73,7 @@ void Uploader::record(Commands& commands) const {
 
 Uploader::Uploader(Context& context, VkDeviceSize stagingBytes)
     : context_(context),
-      halfBytes_(alignUp(std::max(stagingBytes / 2, kMinHalfBytes))),
+      halfBytes_(alignUp(std::max(stagingBytes / 2, kMinHalfBytes), kCopyAlignment)),
       staging_(context,
                {.size = 2 * halfBytes_, .memory = Memory::upload, .name = "upload ring", .purpose = Purpose::staging}) {
 }

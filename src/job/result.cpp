@@ -13,9 +13,9 @@
 namespace quintet::job {
 namespace {
 
-class StoredFilm : public FilmView {
+class HostFilm : public FilmView {
  public:
-  StoredFilm(render::FilmState film, bool transparent) : film_(std::move(film)), transparent_(transparent) {}
+  HostFilm(render::FilmState film, bool transparent) : film_(std::move(film)), transparent_(transparent) {}
 
   const std::vector<render::FilmPlane>& planes() const override { return film_.planes; }
   bool stores(std::size_t output) const override { return film_.planes.at(output).stored(); }
@@ -71,7 +71,7 @@ std::optional<PixelPosition> firstOf(const std::optional<PixelPosition>& a, cons
 }  // namespace
 
 std::shared_ptr<const FilmView> viewOf(render::FilmState film, bool transparent) {
-  return std::make_shared<StoredFilm>(std::move(film), transparent);
+  return std::make_shared<HostFilm>(std::move(film), transparent);
 }
 
 double MemoryUse::ratio() const {

@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "base/text.h"
+
 namespace quintet::program {
 namespace {
 
@@ -29,11 +31,6 @@ int heatKindOf(shader::Stage stage) {
   }
 }
 
-std::string_view trimmed(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  return first == line.npos ? std::string_view() : line.substr(first);
-}
-
 // The lines that must stay first: those up to the last of the leading #version and #extension lines, with the comments and
 // blank lines between them.
 struct Head {
@@ -54,7 +51,7 @@ Head findHead(std::string_view source) {
       inComment = text.find("*/") == text.npos;
       continue;
     }
-    if (text.empty() || text == "\n" || text.starts_with("//")) continue;
+    if (text.empty() || text.starts_with("//")) continue;
     if (text.starts_with("/*")) {
       inComment = text.find("*/", 2) == text.npos;
       continue;
@@ -65,7 +62,9 @@ Head findHead(std::string_view source) {
   return head;
 }
 
-bool isLecture(const std::string& source) { return source.find("#include <quintet/gsn.glsl>") != source.npos; }
+bool includesLectureForm(const std::string& source) {
+  return source.find("#include <quintet/gsn.glsl>") != source.npos;
+}
 
 // Inserts text after the head. Messages keep their line numbers.
 std::string insertAfterHead(const std::string& source, const std::string& text) {
@@ -77,7 +76,7 @@ std::string insertAfterHead(const std::string& source, const std::string& text) 
 
 // The lines that include files of the library. The front end of the lecture form includes the files itself.
 std::string includeLines(const std::string& source, const std::string& includes, bool usesLibrary) {
-  if (isLecture(source)) return {};
+  if (includesLectureForm(source)) return {};
   if (usesLibrary) return includes;
   return "#include <quintet/names_begin.glsl>\n" + includes + "#include <quintet/names_end.glsl>\n";
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/math.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "gpu/commands.h"
@@ -23,10 +24,6 @@ namespace quintet::rt {
 namespace {
 
 constexpr VkDeviceSize kInputAlignment = 16;
-
-VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
-  return (value + alignment - 1) / alignment * alignment;
-}
 
 template <class T>
 std::span<const std::byte> bytesOf(std::span<const T> data) {

@@ -8,14 +8,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/math.h"
 #include "base/plural.h"
 
 namespace quintet::rt {
 namespace {
-
-std::uint64_t alignUp(std::uint64_t value, std::uint64_t alignment) {
-  return (value + alignment - 1) / alignment * alignment;
-}
 
 // Returns the smallest stride for the largest record of a table; 0 for an empty table.
 std::uint64_t strideOf(std::span<const SbtRecord> records, const char* table, const gpu::RayTracingLimits& limits) {

@@ -47,8 +47,8 @@ constexpr StageBuiltIn kBuiltIns[] = {
     {"traceRayEXT", kRayGeneration | kClosestHit | kMiss, true},
 };
 
-constexpr std::array kStages{Stage::rayGeneration, Stage::intersection, Stage::anyHit,
-                             Stage::closestHit,    Stage::miss,         Stage::callable};
+constexpr std::array kRayTracingStages{Stage::rayGeneration, Stage::intersection, Stage::anyHit,
+                                       Stage::closestHit,    Stage::miss,         Stage::callable};
 
 // Returns the name that a message starts with: "gl_HitTEXT" for "'gl_HitTEXT' : undeclared identifier".
 std::string_view quotedName(std::string_view message) {
@@ -80,7 +80,7 @@ const StageBuiltIn* findStageBuiltIn(std::string_view name) {
 
 std::string stagesWith(const StageBuiltIn& builtIn) {
   std::vector<std::string_view> names;
-  for (const Stage stage : kStages)
+  for (const Stage stage : kRayTracingStages)
     if (builtIn.availableIn(stage)) names.push_back(stageName(stage));
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -101,7 +101,8 @@ void explainMissingBuiltIns(std::vector<Diagnostic>& diagnostics, Stage stage) {
       continue;
     }
     const StageBuiltIn* builtIn = findStageBuiltIn(name);
-    if (builtIn == nullptr || std::ranges::find(kStages, stage) == kStages.end() || builtIn->availableIn(stage))
+    if (builtIn == nullptr || std::ranges::find(kRayTracingStages, stage) == kRayTracingStages.end() ||
+        builtIn->availableIn(stage))
       continue;
     d.id = "Q706";
     d.text = name + (builtIn->function ? " cannot be used in " : " does not exist in ") + withArticle(stage) +

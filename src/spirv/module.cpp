@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#define SPV_ENABLE_UTILITY_CODE  // spv::HasResultAndType
 #include "spirv/module.h"
 
 #include <fmt/format.h>

@@ -12,7 +12,7 @@
 namespace quintet::spirv {
 namespace {
 
-using Kind = PrintArgument::Kind;
+using ArgumentKind = PrintArgument::Kind;
 
 constexpr std::string_view kFlags = "-+ #0";
 constexpr std::string_view kIntegers = "diouxXc";
@@ -108,18 +108,18 @@ Parsed Reader::specifier() {
 // The specifier that prints an argument.
 std::string specifierFor(const PrintArgument& argument) {
   return fmt::format("%{}{}{}", argument.count > 1 ? fmt::format("v{}", argument.count) : "",
-                     argument.kind == Kind::integer && argument.bits == 64 ? "l" : "",
-                     argument.kind == Kind::floating                        ? "f"
-                     : argument.kind == Kind::boolean || !argument.isSigned ? "u"
-                                                                            : "d");
+                     argument.kind == ArgumentKind::integer && argument.bits == 64 ? "l" : "",
+                     argument.kind == ArgumentKind::floating                        ? "f"
+                     : argument.kind == ArgumentKind::boolean || !argument.isSigned ? "u"
+                                                                                    : "d");
 }
 
 // True if the specifier prints the argument. It sets isLong for "%ul".
 bool fits(Parsed& parsed, const PrintArgument& argument) {
   if (parsed.count != argument.count) return false;
   const bool isFloat = kFloats.find(parsed.conversion) != kFloats.npos;
-  if (isFloat) return argument.kind == Kind::floating;
-  if (argument.kind != Kind::integer && argument.kind != Kind::boolean) return false;
+  if (isFloat) return argument.kind == ArgumentKind::floating;
+  if (argument.kind != ArgumentKind::integer && argument.kind != ArgumentKind::boolean) return false;
   const bool needsLong = argument.bits == 64;
   if (needsLong && parsed.canBeLong) parsed.isLong = true;
   return parsed.isLong == needsLong && (parsed.conversion != 'c' || !needsLong);
@@ -132,7 +132,7 @@ std::uint64_t rawComponent(std::span<const std::uint32_t> words, std::size_t at,
 
 std::string componentText(const std::string& format, char conversion, const PrintArgument& argument,
                           std::uint64_t raw) {
-  if (argument.kind == Kind::floating)
+  if (argument.kind == ArgumentKind::floating)
     return fmt::sprintf(format, argument.bits == 64 ? std::bit_cast<double>(raw)
                                                     : double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))});
   if (conversion == 'c') {
@@ -166,7 +166,7 @@ PrintFormat::PrintFormat(std::string_view format, const std::vector<PrintArgumen
   for (std::size_t i = 0; i < specifiers.size(); ++i) {
     Parsed& parsed = specifiers[i];
     const PrintArgument& argument = arguments[i];
-    if (argument.kind == Kind::other)
+    if (argument.kind == ArgumentKind::other)
       throw Error(fmt::format("argument {} is {}, which cannot be printed; print its scalars or vectors", i + 1,
                               argument.typeName));
     if (!fits(parsed, argument))

@@ -8,13 +8,14 @@ namespace {
 
 using spv::Op;
 
-constexpr int kMaxDepth = 12;
+constexpr int kMaxExpressionDepth = 12;
 
 bool same(const Module& module, Id a, Id b, int depth) {
   if (a == b) return true;
   const Instruction* left = module.definition(a);
   const Instruction* right = module.definition(b);
-  if (!left || !right || depth > kMaxDepth || left->op != right->op || left->type != right->type) return false;
+  if (!left || !right || depth > kMaxExpressionDepth || left->op != right->op || left->type != right->type)
+    return false;
   if (left->operands.size() != right->operands.size() || left->operands.empty()) return false;
   const auto firstOperand = [&] { return same(module, left->at(0), right->at(0), depth + 1); };
   const auto sameFrom = [&](std::size_t first) {

@@ -12,7 +12,7 @@ namespace quintet::spirv {
 namespace {
 
 using Kind = Type::Kind;
-constexpr int kMaxDepth = 24;       // nesting that is compared or written out
+constexpr int kMaxNesting = 24;     // nesting that is compared or written out
 constexpr int kMaxSteps = 1 << 14;  // of one comparison: nested structures can share parts 2^n times
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 40;
 
@@ -38,7 +38,7 @@ std::string vectorPrefix(const Type& type) {
   return type.width == 32 ? "" : type.width == 64 ? "d" : fmt::format("f{}", type.width);
 }
 
-struct Comparison {
+struct TypeComparison {
   const Types& aTypes;
   const Types& bTypes;
   int steps = 0;
@@ -86,7 +86,7 @@ struct Comparison {
   std::optional<std::string> compare(Id a, Id b, int depth) {
     const Type& left = aTypes.get(a);
     const Type& right = bTypes.get(b);
-    if (++steps > kMaxSteps || depth > kMaxDepth) return {};
+    if (++steps > kMaxSteps || depth > kMaxNesting) return {};
     if (left.kind != right.kind || left.width != right.width || left.isSigned != right.isSigned) return versus(a, b);
     switch (left.kind) {
       case Kind::vector:
@@ -148,7 +148,7 @@ Id Types::part(Id id, const Path& path) const {
 
 std::string Types::nameOf(Id id) const {
   std::string suffix;
-  for (int depth = 0; depth < kMaxDepth; ++depth) {
+  for (int depth = 0; depth < kMaxNesting; ++depth) {
     const Type& type = get(id);
     const Type& element = get(type.element);
     switch (type.kind) {
@@ -193,7 +193,7 @@ std::string Types::memberName(Id id, std::uint32_t member) const {
 }
 
 std::optional<std::string> differenceOf(const Types& aTypes, Id a, const Types& bTypes, Id b) {
-  return Comparison{aTypes, bTypes}.compare(a, b, 0);
+  return TypeComparison{aTypes, bTypes}.compare(a, b, 0);
 }
 
 }  // namespace quintet::spirv

@@ -14,7 +14,6 @@ namespace {
 using spv::Op;
 using Kind = Type::Kind;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxPairs = 256;  // of values that an operation combines
 
 std::uint32_t bitsOf(double value) { return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)); }

@@ -23,11 +23,12 @@ enum class Occurrence {
   many,  // runs of at least ValueRange::run consecutive integers, as far as the range allows, such as coordinates of pixels
 };
 constexpr double kLongRun = 256;
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Integers of up to 32 bits, booleans (0 or 1) and floats.
 struct ValueRange {
-  double min = -std::numeric_limits<double>::infinity();  // inclusive
-  double max = std::numeric_limits<double>::infinity();
+  double min = -kInf;  // inclusive
+  double max = kInf;
   std::vector<double> values;         // all values, sorted; empty if they are unknown or more than kMaxValues
   std::uint32_t ones = 0, zeros = 0;  // bits of an integer that are always set, never set
   bool nan = true;                    // NaN is possible

@@ -20,7 +20,6 @@ namespace {
 using spv::Op;
 using Kind = Type::Kind;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = Module::kNone;
 constexpr int kMaxDepth = 100;             // nested evaluations; deeper values are unknown
 constexpr std::size_t kMaxElements = 256;  // of an array whose elements are joined

@@ -18,8 +18,6 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
-constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
 constexpr ImU32 kPrinted = IM_COL32(110, 200, 255, 255);
 constexpr ImU32 kSelected = IM_COL32(255, 170, 60, 255);
 

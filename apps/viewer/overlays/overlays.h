@@ -6,10 +6,16 @@
 #include <string>
 #include <vector>
 
+#include <imgui.h>
+
 #include "base/math.h"
 #include "view_state.h"
 
 namespace quintet::viewer {
+
+// White text and lines over an image are readable on a shade.
+constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
+constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
 
 // A rectangle of the window, screen coordinates.
 struct Area {

@@ -17,8 +17,6 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
-constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
 constexpr float kPointerDistance = 6.0f;  // pixels at scale 1
 constexpr float kLegendArea = 0.2f;       // the legend covers at most this fraction of the image
 

@@ -16,7 +16,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr float kRows = 10.0f;
+constexpr float kLines = 10.0f;
 
 void lines(const ViewState& state, const job::Printed& printed) {
   ImGui::TextDisabled("%s", counted(printed.lines.size(), "line").c_str());
@@ -26,7 +26,7 @@ void lines(const ViewState& state, const job::Printed& printed) {
     ImGui::TextColored(palette(state.settings.theme).warning, "%s", fmt::format("{} omitted", printed.omitted).c_str());
     tooltip("Lines beyond the limit, or that the device could not store. Choose fewer pixels to see all");
   }
-  ImGui::BeginChild("lines", {0, kRows * ImGui::GetTextLineHeightWithSpacing()}, true,
+  ImGui::BeginChild("lines", {0, kLines * ImGui::GetTextLineHeightWithSpacing()}, true,
                     ImGuiWindowFlags_HorizontalScrollbar);
   for (const job::PrintedLine& line : printed.lines) {
     const std::uint32_t number = line.sample.value_or(line.frame.value_or(0));

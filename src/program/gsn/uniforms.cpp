@@ -19,13 +19,6 @@ namespace {
 
 constexpr std::size_t kMaxUniforms = 256;
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 // Returns the number of "0.5", "1.0f" or "true"; empty for other texts.
 std::optional<double> numberOf(std::string_view text) {
   text = trimmed(text);
