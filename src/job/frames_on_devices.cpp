@@ -89,6 +89,7 @@ class RenderJob::FrameCrew {
   };
 
   void stop(StopRequest request) {
+    const std::lock_guard lock(mutex_);
     stop_ = request;
     changed_.notify_all();
   }

@@ -3,7 +3,7 @@
 // machine several times, as devices of their own.
 #include <gmock/gmock.h>
 
-#include <cstring>
+#include <csignal>
 
 #include "base/file.h"
 #include "device_loss.h"
@@ -184,8 +184,10 @@ TEST_F(SeveralDevices, AreRecorded) {
   EXPECT_EQ(device(two), device(one)) << "one kind";
 }
 
-TEST_F(SeveralDevices, RenderFrames) {
-  write(folder_ / "moving.scene.toml", R"([[mesh]]
+class FramesOnDevices : public SeveralDevices {
+ protected:
+  FramesOnDevices() {
+    write(folder_ / "moving.scene.toml", R"([[mesh]]
 name = "quad"
 shape = "quad"
 size = 1
@@ -193,21 +195,81 @@ size = 1
 of = "quad"
 keyframes = [{ frame = 0, translate = [-1.0, 0.0, 0.0] }, { frame = 4, translate = [1.0, 0.0, 0.0] }]
 )");
-  for (const std::string shutter : {"0,0", "0,0.5"}) {
-    const auto frames = [&](const std::string& devices, const std::string& output) {
-      std::vector<std::string> arguments = command(
-          devices, output,
-          {"--frames", "0-2", "--spp", "12", "--shutter", shutter, "--look-from", "0,0,5", "--look-at", "0,0,0"});
-      arguments[1] = "moving.scene.toml";
-      const RunResult result = quintet(arguments);
-      ASSERT_EQ(result.status, 0) << result.err;
-    };
-    frames("0", "one#.exr");
-    frames("0,0", "two#.exr");
-    for (const std::string frame : {"0", "1", "2"})
-      EXPECT_EQ(readImage("two" + frame + ".exr").data, readImage("one" + frame + ".exr").data) << frame << shutter;
-    EXPECT_NE(readImage("two0.exr").data, readImage("two2.exr").data);
   }
+  static std::vector<std::string> animation(const std::string& devices, const std::string& output,
+                                            const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = command(devices, output, more);
+    arguments[1] = "moving.scene.toml";
+    for (const char* argument : {"--frames", "0-4", "--look-from", "0,0,5", "--look-at", "0,0,0"})
+      arguments.push_back(argument);
+    return arguments;
+  }
+  void expectSameFrames(const std::string& name) {
+    for (const std::string frame : {"0", "1", "2", "3", "4"})
+      EXPECT_EQ(readImage(name + frame + ".exr").data, readImage("one" + frame + ".exr").data) << frame;
+    EXPECT_NE(readImage(name + "0.exr").data, readImage(name + "2.exr").data);
+  }
+};
+
+TEST_F(FramesOnDevices, AreTheSame) {
+  for (const std::string shutter : {"0,0", "0,0.5"}) {
+    const std::vector<std::string> more{"--spp", "12", "--shutter", shutter};
+    for (const auto& [devices, output] : {std::pair("0", "one#.exr"), std::pair("0,0", "two#.exr")}) {
+      const RunResult result = quintet(animation(devices, output, more));
+      ASSERT_EQ(result.status, 0) << result.err;
+    }
+    expectSameFrames("two");
+  }
+}
+
+// A checkpoint holds a frame, so all devices share each frame.
+TEST_F(FramesOnDevices, ResumeWithinAFrame) {
+  ASSERT_EQ(quintet(animation("0", "one#.exr", {"--spp", "24"})).status, 0);
+  const std::vector<std::string> resumable{"--spp", "24", "--checkpoint", "0", "--resume", "--json-progress"};
+  PipeRun process(animation("0,0", "two#.exr", resumable), {.folder = folder_.path()});
+  ASSERT_TRUE(process.waitForNext("\"samples\":24,"));
+  ASSERT_TRUE(process.waitForNext("\"samples\":24,"));
+  process.signal(SIGKILL);
+  process.finish();
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "two0.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "two4.exr"));
+  const RunResult result = quintet(animation("0,0,0", "two#.exr", {"--spp", "24", "--resume", "--json"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(nlohmann::json::parse(result.out)["frames"][0]["writtenBefore"]);
+  expectSameFrames("two");
+}
+
+TEST_F(FramesOnDevices, AreRenderedAgainByOthers) {
+  const std::vector<std::string> more{"--spp", "24"};
+  ASSERT_EQ(quintet(animation("0", "one#.exr", more)).status, 0);
+  for (const unsigned lost : {1u, 2u}) {
+    for (const std::string& name : fileNames())
+      if (name.starts_with("three")) std::filesystem::remove(folder_ / name);
+    const RunResult result = losing(lost, "three0.exr", animation("0,0,0", "three#.exr", more));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("was lost: "));
+    expectSameFrames("three");
+  }
+}
+
+TEST_F(FramesOnDevices, FailIfAllAreLost) {
+  const RunResult result = losing(2, "two0.exr", animation("0,0", "two#.exr", {"--spp", "400"}));
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("quintet: all 2 devices were lost"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "two0.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "two4.exr"));
+}
+
+// Ctrl-C writes the unfinished frame; of the later ones, which other devices have begun, nothing is written.
+TEST_F(FramesOnDevices, StopInOrder) {
+  std::vector<std::string> arguments = animation("0,0", "two#.exr", {"--spp", "100000"});
+  std::erase(arguments, "-q");
+  TerminalRun process(arguments, folder_.path());
+  ASSERT_TRUE(process.waitFor(" samples"));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"moving.scene.toml", "scene.gltf", "two0.exr"}));
 }
 
 // Frames that depend on each other, and prints in the order of the batches, need one device.
