@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Vulkan devices of the machine, the one that renders, and how it can fail.
+// The Vulkan devices of the machine, those that render, and how they can fail.
 #ifndef QUINTET_DEVICE_H
 #define QUINTET_DEVICE_H
 
@@ -51,22 +51,29 @@ std::vector<DeviceInfo> devices();
 // Which device to open, and what it may keep on disk.
 struct DeviceOptions {
   // Index, or part of the name, driver name or kind ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
+  // A list ("0,2", or "all" for all usable devices of the kind of the first one) opens several: a Renderer then shares each
+  // batch between them, and its images have the bytes of one device. If one of them is lost, the others render its samples
+  // again. A device that is named twice is opened twice.
   std::string choice{};
   std::filesystem::path cacheFolder{};  // for compiled shaders and pipelines; empty means that they are kept in memory
   std::function<void(const std::string&)> onWarning{};  // of the driver; called from any thread; may be empty
+  // A list can name different kinds of devices, which can differ in the last bit of a sample; "all" then means all of them.
+  bool mixedDevices = false;
 };
 
-// An open device. It must outlive the renderers that use it.
+// An open device, or several. It must outlive the renderers that use it.
 class Device {
  public:
-  // Throws Error if no device can be used; the message gives the reason for each one.
+  // Throws Error if no device can be used; the message gives the reason for each one. Throws UsageError for a list with
+  // different kinds of devices without mixedDevices.
   explicit Device(const DeviceOptions& options = {});
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
   ~Device();
-  DeviceInfo info() const;     // of the open device
-  std::string name() const;    // info().name
-  std::string driver() const;  // info().driver
+  DeviceInfo info() const;                // of the open device, or of the first one
+  std::vector<DeviceInfo> infos() const;  // of all open devices, in the order of the list
+  std::string name() const;               // info().name
+  std::string driver() const;             // info().driver
 
  private:
   friend class Renderer;

@@ -28,7 +28,11 @@ Device::Device(const DeviceOptions& options) {
     log = [warn = options.onWarning](LogLevel level, const std::string& text) {
       if (level == LogLevel::warning) warn(text);
     };
-  impl_ = std::make_unique<Impl>(job::EngineOptions{options.choice, options.cacheFolder, std::move(log)});
+  impl_ = std::make_unique<Impl>(job::EngineOptions{.device = options.choice,
+                                                    .caches = options.cacheFolder,
+                                                    .log = std::move(log),
+                                                    .severalDevices = true,
+                                                    .mixedDevices = options.mixedDevices});
   impl_->engine.context();
 }
 Device::Device(Device&&) noexcept = default;
@@ -36,6 +40,12 @@ Device& Device::operator=(Device&&) noexcept = default;
 Device::~Device() = default;
 
 DeviceInfo Device::info() const { return toPublic(impl_->engine.context().info()); }
+std::vector<DeviceInfo> Device::infos() const {
+  std::vector<DeviceInfo> result;
+  for (std::size_t i = 0; i < impl_->engine.deviceCount(); ++i)
+    result.push_back(toPublic(impl_->engine.context(i).info()));
+  return result;
+}
 std::string Device::name() const { return info().name; }
 std::string Device::driver() const { return info().driver; }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gpu/device_list.h"
 #include "gpu/device_query.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
@@ -43,7 +44,7 @@ FoundDevice findDevice(VkInstance instance, VkSurfaceKHR surface, const ContextO
       surface ? findPresentingDevices(instance, surface, options.surface->hasGlx) : findDevices(instance);
   std::vector<DeviceInfo> infos;
   for (const FoundDevice& device : devices) infos.push_back(device.info);
-  return devices[chooseDevice(infos, options.device.empty() ? environment("QUINTET_DEVICE") : options.device)];
+  return devices[chooseOneDevice(infos, options.device, environment("QUINTET_DEVICE"))];
 }
 
 // The logical device with one queue.

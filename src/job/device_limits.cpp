@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "gpu/context.h"
+#include "gpu/device_list.h"
 
 namespace quintet::job {
 
@@ -20,9 +21,9 @@ check::DeviceLimits limitsOfDevice(const std::string& request) {
   if (request == "none") return {};
   const std::vector<gpu::DeviceInfo> devices = gpu::Context::devices();
   const char* preset = std::getenv("QUINTET_DEVICE");
-  const std::string selected = !request.empty() || !preset ? request : preset;
-  if (selected.empty() && std::ranges::none_of(devices, &gpu::DeviceInfo::usable)) return {};
-  return deviceLimits(devices[gpu::chooseDevice(devices, selected)]);
+  const std::string fallback = preset ? preset : "";
+  if (request.empty() && fallback.empty() && std::ranges::none_of(devices, &gpu::DeviceInfo::usable)) return {};
+  return deviceLimits(devices[gpu::chooseOneDevice(devices, request, fallback)]);
 }
 
 }  // namespace quintet::job

@@ -23,14 +23,12 @@ namespace {
 using render::FilmFile;
 using render::SampleRange;
 
-constexpr std::string_view kSeparator = "; ";  // between devices
-
 std::vector<std::string> splitList(const std::string& text) {
   std::vector<std::string> entries;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(kSeparator, at), text.size());
+    const std::size_t end = std::min(text.find(kDeviceSeparator, at), text.size());
     entries.push_back(text.substr(at, end - at));
-    at = end + kSeparator.size();
+    at = end + kDeviceSeparator.size();
   }
   return entries;
 }
@@ -132,7 +130,7 @@ class Merger {
       if (std::ranges::find(joined, entry) == joined.end()) joined.push_back(entry);
     if (joined == known) return;
     observer_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, part, whole));
-    whole = fmt::format("{}", fmt::join(joined, kSeparator));
+    whole = fmt::format("{}", fmt::join(joined, kDeviceSeparator));
   }
 
   void takeFirst(std::string_view name, bool isFirst, const Provenance& part) {

@@ -168,6 +168,7 @@ constexpr std::array kFields{
     field<&P::tileError>(Role::result, "", "", "TileError"),
     field<&P::device>(Role::note, "device", "device", "Device"),
     field<&P::driver>(Role::note, "driver", "driver", "Driver"),
+    field<&P::deviceCount>(Role::result, "", "deviceCount", "DeviceCount"),
     field<&P::seconds>(Role::note, "seconds", "", "Seconds"),
     field<&P::batchSeconds>(Role::note, "batch seconds", "", ""),
     field<&P::allOutputs>(Role::note, "all outputs", "", ""),

@@ -19,7 +19,8 @@
 
 namespace quintet::job {
 
-inline constexpr double kMaxExposure = 100.0;  // stops, in both directions
+inline constexpr std::string_view kDeviceSeparator = "; ";  // in Provenance::device and driver
+inline constexpr double kMaxExposure = 100.0;               // stops, in both directions
 
 // A pixel of the whole image; (0, 0) is in the top left corner.
 struct PixelPosition {
@@ -56,7 +57,7 @@ struct Provenance {
   std::string environment;  // "sky.hdr", "default", "none", "of the scene"
   std::string camera;       // "camera 0 'Main'", "automatic"
   std::string parameters;   // "bounces=12 clamp=0"
-  std::string device;       // several are separated by "; "
+  std::string device;       // kinds; several are separated by kDeviceSeparator
   std::string driver;
   double seconds = 0;       // wall clock of rendering
   double batchSeconds = 0;  // of the last batch
@@ -80,6 +81,7 @@ struct Provenance {
   std::uint64_t notFinitePixels = 0;                 // of all stored outputs together
   std::optional<PixelPosition> firstNotFinitePixel;  // of the first output that has one
   std::optional<std::uint64_t> frame;                // of an animation
+  std::optional<std::uint64_t> deviceCount;          // of the process, if it used several
   bool interrupted = false;
   std::optional<double> error;      // stated relative error of the image; unset if unknown
   std::optional<double> tileError;  // 95 % of the tiles have a smaller one

@@ -7,12 +7,14 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/plural.h"
 #include "base/text.h"
+#include "gpu/device_list.h"
 #include "gpu/error.h"
 #include "job/device_limits.h"
 #include "job/film_store.h"
@@ -54,38 +56,33 @@ uvec2 renderedSize(const RenderRequest& request, uvec2 imageSize) {
   return request.region.width > 0 ? uvec2{request.region.width, request.region.height} : imageSize;
 }
 
-// The film on the device.
-class DeviceFilm : public FilmView {
- public:
-  explicit DeviceFilm(const render::Renderer& renderer) : renderer_(renderer) {
-    for (const program::Output& output : renderer.program().outputs) {
-      render::FilmPlane& plane = planes_.emplace_back();
-      plane.name = output.name;
-      plane.pixel = output.pixel;
-      plane.kind = output.kind;
-      plane.color = program::holdsColor(output);
-    }
-  }
-
-  const std::vector<render::FilmPlane>& planes() const override { return planes_; }
-  bool stores(std::size_t output) const override { return renderer_.film().stores(output); }
-  render::SampleCounts counts() const override { return renderer_.film().counts(); }
-  io::Image image(std::size_t output) const override { return renderer_.image(output); }
-  render::FilmPlane plane(std::size_t output) const override { return renderer_.film().plane(output); }
-  io::Image variance() const override { return render::varianceImage(renderer_.film().saveFirst()); }
-  render::FilmState state() const override { return renderer_.saveFilm(); }
-
- private:
-  const render::Renderer& renderer_;
-  std::vector<render::FilmPlane> planes_;
-};
-
 std::string describe(const RenderLimits& limits) {
   std::string text;
   if (limits.samples) text += fmt::format("{} samples ", *limits.samples);
   if (limits.seconds) text += fmt::format("{} s ", *limits.seconds);
   if (limits.error) text += fmt::format("error {} ", *limits.error);
   return text;
+}
+
+// The kinds of devices, each once.
+void describeDevices(const DeviceTeam& team, Provenance& p) {
+  std::vector<std::string> names, drivers;
+  const auto add = [](std::vector<std::string>& texts, const std::string& text) {
+    if (std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
+  };
+  const std::vector<const render::DeviceScene*> scenes = team.scenes();
+  for (const render::DeviceScene* scene : scenes) {
+    add(names, scene->context().info().name);
+    add(drivers, scene->context().info().driver);
+  }
+  p.device = fmt::format("{}", fmt::join(names, kDeviceSeparator));
+  p.driver = fmt::format("{}", fmt::join(drivers, kDeviceSeparator));
+  p.deviceCount.reset();
+  if (scenes.size() > 1) p.deviceCount = scenes.size();
+}
+
+std::string lossText(std::size_t device, const Error& error) {
+  return fmt::format("device {} of the list was lost: {}; the others render without it", device + 1, error.what());
 }
 
 void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& observer) {
@@ -129,8 +126,16 @@ void RenderJob::prepare(Observer& observer) {
   std::optional<SceneLoading> loading;
   if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
   gpu::Context& context = engine_.context();
+  deviceCount_ = deviceCount(observer);
+  if (scene_ && scene_->devices.size() < deviceCount_) {
+    scene_ = nullptr;
+    loading.emplace(job_.scene, request);
+  }
   const std::uint64_t filmBytes = render::Film::bytesPerPixel(job_.program, request.outputs);
-  checkMemory(context.info(), renderedSize(request, request.size), filmBytes);
+  const auto checkMemoryFor = [&](uvec2 size) {
+    for (std::size_t i = 0; i < deviceCount_; ++i) checkMemory(engine_.context(i).info(), size, filmBytes);
+  };
+  checkMemoryFor(renderedSize(request, request.size));
 
   // Compiled while the scene is read and uploaded; errors of the scene are reported first.
   std::future<program::CompiledProgram> compiling = std::async(std::launch::async, [&] {
@@ -141,7 +146,7 @@ void RenderJob::prepare(Observer& observer) {
   if (loading) {
     observer.stage("loading " + job_.scene.name);
     LoadedScene loaded = loading->finish();
-    checkMemory(context.info(), renderedSize(request, loaded.size), filmBytes);
+    checkMemoryFor(renderedSize(request, loaded.size));
     describeScene(loaded, job_, observer);
     prepareScene(std::move(loaded), observer);
   }
@@ -153,6 +158,55 @@ void RenderJob::prepare(Observer& observer) {
   }
   provenance_ = makeProvenance();
   linkedSeconds_ = clock_.seconds();
+}
+
+std::size_t RenderJob::deviceCount(Observer& observer) {
+  const std::size_t count = engine_.deviceCount();
+  if (count == 1) return 1;
+  std::string reason;
+  if (job_.accumulatesFrames())
+    reason = fmt::format("{}: the program averages its frames itself, each from the one before", job_.program.name);
+  else if (job_.request.print)
+    reason = "prints are shown in the order of the batches";
+  if (reason.empty()) return count;
+  if (!std::exchange(devicesNoted_, true))
+    observer.note(fmt::format("{}, so one of the {} devices renders", reason, count));
+  return 1;
+}
+
+// Uploads the scene to all devices side by side. They share the scene in host memory; the only device consumes it.
+void RenderJob::makeScenes(PreparedScene& prepared, LoadedScene& loaded, Observer& observer) const {
+  const render::DeviceSceneOptions options{
+      .singleAnyHit = prepared.singleAnyHit, .editable = job_.request.editable, .compiler = &engine_.compiler()};
+  const scene::Environment& environment = loaded.environment.environment;
+  if (deviceCount_ == 1) {
+    prepared.onDevice =
+        std::make_unique<render::DeviceScene>(engine_.context(), std::move(loaded.scene), environment, options);
+    prepared.devices = {0};
+    return;
+  }
+  std::vector<std::future<std::unique_ptr<render::DeviceScene>>> uploads;
+  const scene::Scene& scene = loaded.scene;
+  for (std::size_t i = 0; i < deviceCount_; ++i)
+    uploads.push_back(std::async(std::launch::async, [&, &context = engine_.context(i)] {
+      return std::make_unique<render::DeviceScene>(context, scene, environment, options);
+    }));
+  for (std::size_t i = 0; i < deviceCount_; ++i) {
+    const bool isLast = i + 1 == deviceCount_;
+    try {
+      std::unique_ptr<render::DeviceScene> uploaded = uploads[i].get();
+      if (prepared.onDevice)
+        prepared.onFurther.push_back(std::move(uploaded));
+      else
+        prepared.onDevice = std::move(uploaded);
+      prepared.devices.push_back(i);
+    } catch (const TimeoutError&) {
+      throw;
+    } catch (const DeviceLostError& error) {
+      if (isLast && !prepared.onDevice) throw;
+      observer.warning(lossText(i, error));
+    }
+  }
 }
 
 void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
@@ -180,10 +234,7 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->seconds.load = loaded.seconds;
   prepared->singleAnyHit = program::requiredSingleAnyHit(job_.program);
   const scene::ImportSeconds import = loaded.scene.seconds;
-  prepared->onDevice = std::make_unique<render::DeviceScene>(
-      engine_.context(), std::move(loaded.scene), loaded.environment.environment,
-      render::DeviceSceneOptions{
-          .singleAnyHit = prepared->singleAnyHit, .editable = job_.request.editable, .compiler = &engine_.compiler()});
+  makeScenes(*prepared, loaded, observer);
   if (!job_.request.editable) loaded.environment.environment.image = {};
   prepared->environmentInUse = std::move(loaded.environment);
   prepared->seconds.build = building.seconds();
@@ -202,15 +253,63 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   releaseFreedMemory();
 }
 
+CheckedProgram RenderJob::checkProgram(const render::DeviceScene& scene, program::CompiledProgram compiled) const {
+  CheckedProgram checked =
+      checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(scene.context().info()));
+  countRecursion(checked, engine_.compiler(), render::renderDefines(scene.defines(), job_.request.outputs));
+  return checked;
+}
+
+// Links the program on all devices side by side. `runnable`: for devices of the kind of the first one.
+std::vector<TeamMember> RenderJob::makeMembers(program::RunnableProgram runnable,
+                                               const render::RenderSettings& settings, Observer& observer) {
+  const auto linkOn = [&](render::DeviceScene& scene, gpu::PipelineCache& cache, program::RunnableProgram program) {
+    return std::make_unique<render::Renderer>(scene, std::move(program), engine_.compiler(), &cache, settings);
+  };
+  std::vector<TeamMember> members;
+  render::DeviceScene& first = *scene_->onDevice;
+  if (deviceCount_ == 1) {
+    gpu::PipelineCache& cache = engine_.pipelineCache(scene_->devices.front());
+    members.push_back({&first, linkOn(first, cache, std::move(runnable))});
+    return members;
+  }
+  const auto programOn = [&](const render::DeviceScene& scene) {
+    if (gpu::isSameKind(scene.context().info(), first.context().info())) return runnable;
+    const render::Defines defines = render::renderDefines(scene.defines(), job_.request.outputs);
+    CheckedProgram checked = checkProgram(scene, program::compile(job_.program, engine_.compiler(), defines));
+    addProbes(checked, engine_.compiler(), defines,
+              requestedProbes(job_.request, job_.program, scene.context().info()));
+    return std::move(checked.runnable);
+  };
+  std::vector<render::DeviceScene*> scenes{&first};
+  for (const auto& scene : scene_->onFurther) scenes.push_back(scene.get());
+  std::vector<std::future<std::unique_ptr<render::Renderer>>> links;
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    links.push_back(
+        std::async(std::launch::async, [&, scene = scenes[i], &cache = engine_.pipelineCache(scene_->devices[i])] {
+          return linkOn(*scene, cache, programOn(*scene));
+        }));
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    try {
+      members.push_back({scenes[i], links[i].get()});
+    } catch (const TimeoutError&) {
+      throw;
+    } catch (const DeviceLostError& error) {
+      if (i + 1 == links.size() && members.empty()) throw;
+      observer.warning(lossText(scene_->devices[i], error));
+    }
+  }
+  return members;
+}
+
 void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   const RenderRequest& request = job_.request;
   render::DeviceScene& scene = *scene_->onDevice;
+  deviceCount_ = std::min(deviceCount(observer), scene_->devices.size());
   std::vector<std::filesystem::path> includedFiles = compiled.files;
   const std::vector<Hash> includedHashes = compiled.fileHashes;
-  CheckedProgram checked =
-      checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
+  CheckedProgram checked = checkProgram(scene, std::move(compiled));
   const render::Defines defines = render::renderDefines(scene.defines(), request.outputs);
-  countRecursion(checked, engine_.compiler(), defines);
   std::vector<Diagnostic> warnings = std::move(checked.diagnostics);
   std::erase_if(warnings, [](const Diagnostic& d) { return d.severity == Severity::note; });
   if (!warnings.empty()) observer.diagnostics(warnings);
@@ -238,16 +337,15 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
     observer.printsDisabled();
   }
   program::PrintTable table =
-      addProbes(checked, engine_.compiler(), defines, requestedProbes(request, job_.program, engine_.context().info()));
+      addProbes(checked, engine_.compiler(), defines, requestedProbes(request, job_.program, scene.context().info()));
   std::unique_ptr<PrintLog> prints;
   if (request.print && table.empty()) {
     observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
   } else if (request.print) {
-    prints = std::make_unique<PrintLog>(engine_.context(), *request.print, printableRegion(settings), std::move(table));
+    prints = std::make_unique<PrintLog>(scene.context(), *request.print, printableRegion(settings), std::move(table));
     settings.log = &prints->log();
   }
-  renderer_ = std::make_unique<render::Renderer>(scene, std::move(checked.runnable), engine_.compiler(),
-                                                 &engine_.pipelineCache(), settings);
+  team_ = std::make_unique<DeviceTeam>(makeMembers(std::move(checked.runnable), settings, observer));
   prints_ = std::move(prints);
   callsPrint_ = callsPrint;
   includedFiles_ = std::move(includedFiles);
@@ -257,11 +355,12 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
 }
 
 void RenderJob::setSize(uvec2 size) {
-  checkMemory(engine_.context().info(), size, render::Film::bytesPerPixel(job_.program, job_.request.outputs));
-  if (renderer_) renderer_->setSize(size);
+  const std::uint64_t filmBytes = render::Film::bytesPerPixel(job_.program, job_.request.outputs);
+  for (std::size_t i = 0; i < deviceCount_; ++i) checkMemory(engine_.context(i).info(), size, filmBytes);
+  if (team_) changeRenderers([&](render::Renderer& renderer) { renderer.setSize(size); });
   job_.request.size = size;
   job_.request.region = {};
-  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  if (!team_) return;  // update() failed and is repeated by the next run()
   scene_->size = size;
   restart();
   provenanceOutdated_ = true;
@@ -278,10 +377,10 @@ void RenderJob::setPrint(std::optional<PrintRequest> print, Observer& observer) 
   assert(job_.request.editable && (!print || print->all || print->pixels.width > 0));
   printsInAnySize_ = true;
   std::swap(job_.request.print, print);
-  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  if (!team_) return;  // update() failed and is repeated by the next run()
   observer.stage("compiling shaders");
   try {
-    renderer_->finish();
+    team_->finish();
     link(program::compile(job_.program, engine_.compiler(),
                           render::renderDefines(scene_->onDevice->defines(), job_.request.outputs)),
          observer);
@@ -304,7 +403,7 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
   ResolvedJob changed = resolve(std::move(request), std::move(program));
   changed.scene = job_.scene;
   frameOutdated_ = true;  // a program that accumulates has moved the scene to a frame of its own
-  if (!renderer_) {       // update() failed and is repeated by the next run()
+  if (!team_) {           // update() failed and is repeated by the next run()
     job_ = std::move(changed);
     suspendedShutter_ = suspended;
     return;
@@ -314,7 +413,7 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
       changed.program, engine_.compiler(), render::renderDefines(scene_->onDevice->defines(), with.outputs));
   std::swap(job_, changed);
   try {
-    renderer_->finish();
+    team_->finish();
     link(std::move(compiled), observer);
   } catch (...) {
     std::swap(job_, changed);
@@ -332,7 +431,7 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
 
 Provenance RenderJob::makeProvenance() const {
   const RenderRequest& request = job_.request;
-  Provenance p = identityOf(job_, *renderer_, scene_->camera, scene_->size);
+  Provenance p = identityOf(job_, team_->first(), scene_->camera, scene_->size);
   p.programHash = provenance_.programHash;
   // Frames of an animation are different scenes: the film of one does not continue another.
   const bool isStart = frame_ == 0 || !scene_->onDevice->animated();
@@ -343,8 +442,7 @@ Provenance RenderJob::makeProvenance() const {
   p.environment = scene_->environment;
   p.camera = scene_->cameraDescription;
   p.parameters = job_.parameters.describe();
-  p.device = engine_.context().info().name;
-  p.driver = engine_.context().info().driver;
+  describeDevices(*team_, p);
   p.targetError = request.limits.error;
   p.limits = describe(request.limits);
   const OutputNotes& notes = request.outputNotes;
@@ -367,25 +465,26 @@ Provenance RenderJob::makeProvenance() const {
 RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool withError) const {
   RenderResult result;
   result.provenance = provenance_;
-  result.film = std::make_shared<DeviceFilm>(*renderer_);
+  team_->join();
+  result.film = team_->view();
   result.plan = start.plan;
   result.accumulatesFrames = job_.accumulatesFrames();
   result.diagnostics = diagnostics_;
-  if (withError && !result.accumulatesFrames) result.error = renderer_->film().estimateError();
+  if (withError && !result.accumulatesFrames) result.error = team_->estimateError();
 
-  const render::RenderStatistics& statistics = renderer_->statistics();
+  const render::Renderer& first = team_->first();
+  const render::RenderStatistics& statistics = first.statistics();
   // Checkpoints and previews do not need them.
   const bool isFinal = withError || result.accumulatesFrames;
-  if (isFinal) result.skippedTraces = renderer_->skippedTraces();
-  result.recursionDepth = renderer_->linked().recursionDepth();
-  setCounts(result, renderer_->rays(), isFinal ? renderer_->notFinitePixels() : std::vector<render::NotFinitePixels>());
+  if (isFinal) result.skippedTraces = team_->skippedTraces();
+  result.recursionDepth = first.linked().recursionDepth();
+  setCounts(result, team_->rays(), isFinal ? team_->notFinitePixels() : std::vector<render::NotFinitePixels>());
   Provenance& p = result.provenance;
   p.seconds = seconds;
   p.batchSeconds = start.batchSeconds;
-  p.samples =
-      job_.request.limits.adaptive
-          ? static_cast<std::uint64_t>(render::averageSamples(renderer_->film().region(), renderer_->film().counts()))
-          : statistics.samples;
+  p.samples = job_.request.limits.adaptive
+                  ? static_cast<std::uint64_t>(render::averageSamples(team_->region(), team_->counts()))
+                  : (team_->isShared() ? team_->counts().samples() : statistics.samples);
   if (result.error.known()) {
     p.error = result.error.upper;
     p.tileError = result.error.tiles;
@@ -399,7 +498,7 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   t.pipeline = statistics.pipelineSeconds;
   t.firstPixel = firstPixelSeconds_;
   t.render = seconds;
-  t.device = statistics.deviceSeconds;
+  t.device = team_->deviceSeconds();
   t.stages.insert(t.stages.begin(), {"start", t.start});
   t.stages.insert(t.stages.end(), {{"topLevel", built.topLevelSeconds},
                                    {"compile", t.compile},
@@ -408,23 +507,26 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
 
   MemoryUse& m = result.memory;
   m.peakHost = peakResidentBytes();
-  const gpu::DeviceMemory device = engine_.context().memory();
-  m.peakDevice = device.peak;
-  for (std::size_t i = 0; i < gpu::kPurposeCount; ++i)
-    m.devicePeak.emplace_back(gpu::purposeName(static_cast<gpu::Purpose>(i)), device.atPeak[i]);
-  m.devicePeak.emplace_back("unused", device.unusedAtPeak());
-  m.deviceIsHost = engine_.context().info().software;
+  for (std::size_t i = 0; i <= gpu::kPurposeCount; ++i)
+    m.devicePeak.emplace_back(i < gpu::kPurposeCount ? gpu::purposeName(static_cast<gpu::Purpose>(i)) : "unused", 0);
+  for (const render::DeviceScene* scene : team_->scenes()) {
+    const gpu::DeviceMemory device = scene->context().memory();
+    m.peakDevice += device.peak;
+    for (std::size_t i = 0; i < gpu::kPurposeCount; ++i) m.devicePeak[i].second += device.atPeak[i];
+    m.devicePeak.back().second += device.unusedAtPeak();
+  }
+  m.deviceIsHost = scene_->onDevice->context().info().software;
   m.geometry = built.geometryBytes;
   m.textures = built.textureBytes;
   m.acceleration = built.accelerationBytes;
   m.primitiveMaps = built.primitiveMapBytes;
-  result.filmBytes = renderer_->film().bytes();
+  result.filmBytes = first.film().bytes();
   return result;
 }
 
 void RenderJob::beginFilm() {
   start_ = firstSample();
-  renderer_->startAt(start_.begin / render::kBatchSamples);
+  team_->startAt(start_.begin / render::kBatchSamples);
 }
 
 StartPoint RenderJob::firstSample() const {
@@ -448,10 +550,10 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   if (std::exchange(started_, true)) return start_;
   beginFilm();
   if (checkpoint_) {
-    const render::FilmState empty = renderer_->saveFilm();
+    const render::FilmState empty = team_->saveFilm();
     if (const std::optional<StoredFilm> film =
             checkpoint_->load(provenance_, empty, start_, limits, observer, request.load.maxMemory)) {
-      renderer_->restoreFilm(film->file.film);
+      team_->restoreFilm(film->file.film);
       start_ = resumePoint(*film, provenance_, request.checkpoint.file, start_, observer);
     }
   }
@@ -460,20 +562,20 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
     const auto begin = static_cast<std::uint32_t>(start_.begin),
                end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), start_.done));
     rejectLoss(request.film, toFacts(provenance_, ProvenanceField::Role::identity),
-               {{{begin, end}}, renderer_->film().counts().cellBatches}, request.load.maxMemory);
+               {{{begin, end}}, team_->counts().cellBatches}, request.load.maxMemory);
   }
   return start_;
 }
 
 void RenderJob::discardPrints() {
   if (!prints_) return;
-  renderer_->finish();
+  team_->finish();
   prints_->restart();
 }
 
 void RenderJob::flushPrints(Observer& observer) {
   if (!prints_) return;
-  renderer_->finish();
+  team_->finish();
   PrintNumbers numbers;
   numbers.accumulates = job_.accumulatesFrames();
   if (scene_->onDevice->animated()) numbers.frame = static_cast<std::uint32_t>(frame_);
@@ -482,8 +584,8 @@ void RenderJob::flushPrints(Observer& observer) {
 
 void RenderJob::showImage(Observer& observer) const {
   if (!observer.wantsImage()) return;
-  renderer_->finish();  // the observer can measure how long the film takes
-  observer.image(DeviceFilm(*renderer_));
+  team_->finish();  // the observer can measure how long the film takes
+  observer.image(*team_->view());
 }
 
 template <class Function>
@@ -530,12 +632,14 @@ std::optional<double> RenderJob::renderFilmBatch(std::uint64_t samples, Observer
   RenderLimits limits;
   limits.samples = samples;
   StartPoint start = startPoint(limits, observer);
-  SamplingSchedule schedule(*renderer_, limits, start);
-  if (!schedule.next()) return 0.0;
+  SamplingSchedule schedule(*team_, limits, start);
+  if (!schedule.next(0.0)) return 0.0;
   const Stopwatch clock;
   const bool complete =
       schedule.render([&](double /*fraction*/) { return observer.stopRequested() != StopRequest::abandon; });
-  renderer_->finish();
+  team_->finish();
+  reportLosses(observer);
+  if (!complete && team_->isShared()) restart();
   if (!complete) return std::nullopt;
   start.done = schedule.nextSample();
   start.batchSeconds = clock.seconds();
@@ -548,9 +652,9 @@ std::optional<double> RenderJob::renderNextFrame(std::uint64_t count, Observer& 
   if (nextFrame_ >= count) return 0.0;
   const Stopwatch clock;
   if (scene_->onDevice->animated()) scene_->onDevice->setFrame(nextFrame_);
-  const bool complete = renderer_->renderFrame(
+  const bool complete = team_->first().renderFrame(
       nextFrame_, [&](double /*fraction*/) { return observer.stopRequested() != StopRequest::abandon; });
-  renderer_->finish();
+  team_->finish();
   if (!complete) return std::nullopt;
   ++nextFrame_;
   start_.seconds += clock.seconds();
@@ -570,13 +674,35 @@ void RenderJob::requireAnimation(std::string_view consequence) const {
                                job_.scene.name, cause, consequence));
 }
 
+void RenderJob::reportLosses(Observer& observer) const {
+  for (const std::string& text : team_->takeWarnings()) observer.warning(text);
+}
+
+// How long several devices may render until the next decision about checkpoints and time.
+double RenderJob::roundSeconds(const RenderLimits& limits, double elapsed) const {
+  double seconds = DeviceTeam::kRoundSeconds;
+  if (limits.seconds) seconds = std::min(seconds, std::max(0.0, *limits.seconds - elapsed));
+  if (checkpoint_) seconds = std::min(seconds, checkpoint_->request().seconds);
+  return seconds;
+}
+
+// If several devices fail, nothing is left of their film.
+bool RenderJob::renderRound(SamplingSchedule& schedule, const render::BatchProgress& progress) {
+  try {
+    return schedule.render(progress);
+  } catch (...) {
+    if (team_->isShared()) forgetSamples();
+    throw;
+  }
+}
+
 RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observer) {
   const RenderLimits limits = withinPart(requested);
   StartPoint start = startPoint(limits, observer);
   const bool wasEmpty = start.done == start.begin;
   const Stopwatch clock;
   const auto elapsed = [&, before = start.seconds] { return before + clock.seconds(); };
-  SamplingSchedule schedule(*renderer_, limits, start);
+  SamplingSchedule schedule(*team_, limits, start);
   const auto resultNow = [&](double seconds, bool withError) {
     start.plan = schedule.plan();
     return makeResult(seconds, start, withError);
@@ -602,10 +728,10 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
   progress.secondLimit = limits.seconds;
   double rateTaken = 0, estimated = 0, estimateSeconds = 0;
   bool abandoned = false, interrupted = false, outOfTime = false, previewed = !wasEmpty;
-  while (schedule.next()) {
+  while (schedule.next(roundSeconds(limits, elapsed()))) {
     const double begin = elapsed();
     const double before = schedule.samples();
-    const bool complete = schedule.render([&](double fraction) {
+    const bool complete = renderRound(schedule, [&](double fraction) {
       if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
       progress.samples = before + fraction * schedule.batchSamples();
       progress.seconds = elapsed();
@@ -615,7 +741,9 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
       abandoned = observer.stopRequested() == StopRequest::abandon;
       return !abandoned;
     });
+    reportLosses(observer);
     if (!complete || abandoned) {  // the last progress of a batch cannot cancel it
+      if (team_->isShared()) forgetSamples();
       RenderResult useless;
       useless.abandoned = true;
       return useless;
@@ -623,7 +751,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     const double now = elapsed();
     if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
     start.done = schedule.nextSample();
-    start.batchSeconds = now - begin;
+    start.batchSeconds = (now - begin) / static_cast<double>(team_->roundBatches());
     if (!std::exchange(previewed, true) && observer.wantsPreviews()) observer.preview(resultNow(now, true));
     if (checkpoint_ && checkpoint_->isDue()) checkpoint_->save(resultNow(now, false), observer);
     observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
@@ -632,11 +760,11 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     showImage(observer);
     if ((outOfTime = timeIsUp(now))) break;
     if (observer.stopRequested() == StopRequest::finish) {
-      interrupted = schedule.next();  // otherwise everything is rendered
+      interrupted = schedule.next(0.0);  // otherwise everything is rendered
       break;
     }
     if (now - rateTaken > kRateSeconds) {
-      progress.raysPerSecond = static_cast<double>(renderer_->rays().rays) / now;
+      progress.raysPerSecond = static_cast<double>(team_->rays().rays) / now;
       rateTaken = now;
     }
     if (observer.showsError() && !limits.error &&
@@ -646,55 +774,73 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
       estimateSeconds = estimated - now;
     }
   }
-  renderer_->finish();
+  team_->finish();
   RenderResult done = finish(elapsed(), outOfTime ? atTimeLimit() : schedule.reached());
   done.interrupted = done.provenance.interrupted = interrupted;
   if (checkpoint_ && checkpoint_->mustStay(done)) checkpoint_->saveIfChanged(done, observer);
   return done;
 }
 
-// Each frame is an image of its own; if only the last one is written, only that one is rendered.
-RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& observer) {
+RenderResult RenderJob::renderAnimationFrame(std::uint32_t frame, const RenderLimits& limits, Observer& observer) {
+  frame_ = frame;
+  describeFrame();
+  changeScenes([&](render::DeviceScene& scene) { scene.setFrame(shownFrame()); });
+  moveShutter();
+  team_->restart();
+  started_ = false;  // a checkpoint can hold the samples of this frame
+  return runFilm(limits, observer);
+}
+
+bool RenderJob::addToSequence(FrameSequence& sequence, std::uint32_t frame, RenderResult result, double seconds,
+                              Observer& observer) {
   const FrameRequest& frames = job_.request.frames;
-  double seconds = 0;
-  bool missed = false;
-  RenderResult last, earlier;
-  for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
-       ++frame) {
-    frame_ = frame;
-    describeFrame();
-    if (isFrameWritten(frame, observer)) continue;
-    scene_->onDevice->setFrame(shownFrame());
-    moveShutter();
-    renderer_->restart();
-    started_ = false;  // a checkpoint can hold the samples of this frame
-    last = runFilm(limits, observer);
-    if (last.abandoned) return last;
-    seconds += last.provenance.seconds;
-    last.provenance.seconds = last.seconds.render = seconds;
-    // The name of a single frame needs no number.
-    if (scene_->onDevice->animated()) last.provenance.frame = frame;
-    const bool isLast = frame == frames.lastFrame();
-    const bool stop = observer.stopRequested() == StopRequest::finish && !isLast;
-    last.interrupted = last.provenance.interrupted = last.interrupted || stop;
-    last.earlierTargetMissed = missed;
-    if (frames.every) finishFrame(last, observer);
-    if (last.interrupted || isLast) break;
-    addFrame(earlier, last);
-    // The caller sees only the last result, to which addFrame() adds what is not finite.
-    if (last.targetMissed) observer.warning(fmt::format("frame {}: {}", frame, resultWarnings(last).front()));
-    missed = missed || last.targetMissed;
-  }
+  RenderResult& last = sequence.last = std::move(result);
+  sequence.seconds = last.provenance.seconds = last.seconds.render = seconds;
+  // The name of a single frame needs no number.
+  if (scene_->onDevice->animated()) last.provenance.frame = frame;
+  const bool isLast = frame == frames.lastFrame();
+  const bool stop = observer.stopRequested() == StopRequest::finish && !isLast;
+  last.interrupted = last.provenance.interrupted = last.interrupted || stop;
+  last.earlierTargetMissed = sequence.missed;
+  if (frames.every) finishFrame(last, observer);
+  if (last.interrupted || isLast) return false;
+  addFrame(sequence.earlier, last);
+  // The caller sees only the last result, to which addFrame() adds what is not finite.
+  if (last.targetMissed) observer.warning(fmt::format("frame {}: {}", frame, resultWarnings(last).front()));
+  sequence.missed = sequence.missed || last.targetMissed;
+  return true;
+}
+
+RenderResult RenderJob::endSequence(FrameSequence sequence) {
+  RenderResult last = std::move(sequence.last);
   if (!last.film) {  // all frames were written before, or those at the end
-    last = makeResult(seconds, start_, false);
-    last.provenance.frame = frames.lastFrame();
+    last = makeResult(sequence.seconds, start_, false);
+    last.provenance.frame = job_.request.frames.lastFrame();
   }
-  addFrame(last, earlier);
+  addFrame(last, sequence.earlier);
   return last;
 }
 
-bool RenderJob::isFrameWritten(std::uint32_t frame, Observer& observer) const {
+// Each frame is an image of its own; if only the last one is written, only that one is rendered.
+RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& observer) {
+  if (givesFramesToDevices()) return runFramesOnDevices(limits, observer);
+  const FrameRequest& frames = job_.request.frames;
+  FrameSequence sequence;
+  for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
+       ++frame) {
+    if (isFrameWritten(frame, observer)) continue;
+    RenderResult result = renderAnimationFrame(frame, limits, observer);
+    if (result.abandoned) return result;
+    const double seconds = sequence.seconds + result.provenance.seconds;
+    if (!addToSequence(sequence, frame, std::move(result), seconds, observer)) break;
+  }
+  return endSequence(std::move(sequence));
+}
+
+bool RenderJob::isFrameWritten(std::uint32_t frame, Observer& observer) {
   if (!job_.request.frames.every || !job_.request.checkpoint.resume) return false;
+  frame_ = frame;
+  describeFrame();
   Provenance asked = provenance_;
   if (scene_->onDevice->animated()) asked.frame = frame;
   return observer.isFrameWritten(asked);
@@ -734,7 +880,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   for (std::uint32_t frame = nextFrame_;; ++frame) {
     if (scene_->onDevice->animated()) scene_->onDevice->setFrame(frame);
     bool abandoned = false;
-    renderer_->renderFrame(frame, [&](double fraction) {
+    team_->first().renderFrame(frame, [&](double fraction) {
       if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
       progress.samples = frame + fraction;
       progress.seconds = elapsed();
@@ -758,7 +904,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     const bool preview = !isLast && !interrupted && !frames.every && observer.wantsPreviews() &&
                          (!previewed || elapsed() - lastPreview >= kPreviewSeconds);
     if (!isLast && !interrupted && !frames.every && !preview) continue;
-    renderer_->finish();
+    team_->finish();
     start_.seconds = elapsed();
     RenderResult done = result();
     done.reached = isComplete ? ReachedLimit::samples : ReachedLimit::seconds;
@@ -773,18 +919,18 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   }
 }
 
-void RenderJob::requireRenderer() const {
-  if (!renderer_) throw Error("a change of the scene failed; the next render repeats it");
+void RenderJob::requireTeam() const {
+  if (!team_) throw Error("a change of the scene failed; the next render repeats it");
 }
 
 render::Renderer& RenderJob::renderer() {
-  requireRenderer();
-  return *renderer_;
+  requireTeam();
+  return team_->first();
 }
 
 const render::Region& RenderJob::region() const {
-  requireRenderer();
-  return renderer_->film().region();
+  requireTeam();
+  return team_->region();
 }
 
 void RenderJob::showRequestedFrame() {
@@ -798,24 +944,25 @@ void RenderJob::showRequestedFrame() {
 }
 
 std::shared_ptr<FilmView> RenderJob::film() const {
-  requireRenderer();
-  return std::make_shared<DeviceFilm>(*renderer_);
+  requireTeam();
+  return team_->view();
 }
 
 double RenderJob::sampleCount() const {
-  if (!renderer_) return 0;  // a failed edit has discarded all samples
-  if (job_.accumulatesFrames()) return static_cast<double>(renderer_->statistics().samples);
-  return render::averageSamples(renderer_->film().region(), renderer_->film().counts());
+  if (!team_) return 0;  // a failed edit has discarded all samples
+  if (job_.accumulatesFrames()) return static_cast<double>(team_->first().statistics().samples);
+  return render::averageSamples(team_->region(), team_->counts());
 }
 
 void RenderJob::showFrame() {
   describeFrame();
-  scene_->onDevice->setFrame(shownFrame());
+  changeScenes([&](render::DeviceScene& scene) { scene.setFrame(shownFrame()); });
   moveShutter();
 }
 
 void RenderJob::moveShutter() {
-  if (shutter() || !scene_->movingCameras.empty()) renderer_->setShutter(shutter(), movingCamera());
+  if (!shutter() && scene_->movingCameras.empty()) return;
+  changeRenderers([&](render::Renderer& renderer) { renderer.setShutter(shutter(), movingCamera()); });
 }
 
 std::optional<render::ShutterInterval> RenderJob::shutter() const {
@@ -839,7 +986,7 @@ void RenderJob::describeFrame() {
     CameraChoice chosen = chooseMovingCamera(job_.request.camera, shownFrame());
     scene_->camera = chosen.camera;
     scene_->cameraDescription = std::move(chosen.description);
-    renderer_->setCamera(scene_->camera);
+    changeRenderers([&](render::Renderer& renderer) { renderer.setCamera(scene_->camera); });
   }
   provenance_ = makeProvenance();
 }
@@ -855,11 +1002,12 @@ CameraChoice RenderJob::chooseMovingCamera(const CameraRequest& camera, double f
 
 void RenderJob::showCurrentFrame() {
   if (!scene_ || !scene_->onDevice->animated()) return;
-  scene_->onDevice->setFrame(job_.accumulatesFrames() ? double{std::max(nextFrame_, 1u) - 1.0} : shownFrame());
+  const double frame = job_.accumulatesFrames() ? double{std::max(nextFrame_, 1u) - 1.0} : shownFrame();
+  changeScenes([&](render::DeviceScene& scene) { scene.setFrame(frame); });
 }
 
 RenderResult RenderJob::result(bool withError) const {
-  requireRenderer();
+  requireTeam();
   describeEdits();
   RenderResult result = makeResult(start_.seconds, start_, withError);
   if (job_.accumulatesFrames() && nextFrame_ > 0) result.provenance.frame = nextFrame_ - 1;
@@ -878,11 +1026,11 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
   RenderLimits limits;
   limits.adaptive = job_.request.limits.adaptive;
   const StartPoint first = firstSample();
-  const std::optional<StoredFilm> film = loadCheckpoint(request, provenance_, renderer_->saveFilm(), first,
+  const std::optional<StoredFilm> film = loadCheckpoint(request, provenance_, team_->saveFilm(), first,
                                                         withinPart(limits), observer, job_.request.load.maxMemory);
   if (!film) return false;
   restart();
-  renderer_->restoreFilm(film->file.film);
+  team_->restoreFilm(film->file.film);
   start_ = resumePoint(*film, provenance_, file, first, observer);
   started_ = true;
   return true;

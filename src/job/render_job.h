@@ -15,11 +15,13 @@
 
 #include "base/stopwatch.h"
 #include "job/checkpoint.h"
+#include "job/device_team.h"
 #include "job/engine.h"
 #include "job/observer.h"
 #include "job/print_log.h"
 #include "job/resolve.h"
 #include "job/result.h"
+#include "job/runnable_program.h"
 #include "job/sampling_schedule.h"
 #include "job/scene_loading.h"
 #include "job/view.h"
@@ -49,7 +51,9 @@ struct PreparedScene {
   Bounds3 bounds;                                                       // of the animated scene, if cameras move
   program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;  // of the acceleration structures
   Timings seconds;
-  std::unique_ptr<render::DeviceScene> onDevice;
+  std::shared_ptr<render::DeviceScene> onDevice;                // on the first device
+  std::vector<std::shared_ptr<render::DeviceScene>> onFurther;  // on the others, in the order of `devices`
+  std::vector<std::size_t> devices;                             // in the engine, without those that were lost
 };
 
 // Members of RenderRequest that belong to a program.
@@ -59,9 +63,10 @@ struct ProgramRequest {
   std::vector<std::string> assignments;
 };
 
+// With several devices in the engine, all of them render; a program that accumulates and a request for prints use the first one.
 class RenderJob {
  public:
-  // Loads the scene, opens the device and compiles the program side by side; then builds acceleration structures,
+  // Loads the scene, opens the devices and compiles the program side by side; then builds acceleration structures,
   // checks and links. `engine` outlives the job. Throws ProgramError, FileError, UsageError, MemoryError,
   // gpu::NoDeviceError, gpu::VulkanError.
   RenderJob(Engine& engine, ResolvedJob job, Observer& observer);
@@ -139,7 +144,7 @@ class RenderJob {
 
   const ResolvedJob& resolved() const { return job_; }
   const std::shared_ptr<PreparedScene>& scene() const { return scene_; }
-  render::Renderer& renderer();                           // throws Error if an edit failed
+  render::Renderer& renderer();                           // of the first device; throws Error if an edit failed
   std::uint64_t linkCount() const { return linkCount_; }  // of programs so far, each with a new renderer
   const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
   // For users of renderer(): moves the scene to the frame that run() shows last. Programs that accumulate
@@ -157,8 +162,23 @@ class RenderJob {
   std::vector<std::filesystem::path> files() const;         // of scene and program
 
  private:
+  class FrameCrew;
+  // The same job on one of its devices, for whole frames.
+  RenderJob(const RenderJob& job, const TeamMember& member);
+
   void prepare(Observer& observer);
   void prepareScene(LoadedScene loaded, Observer& observer);
+  std::size_t deviceCount(Observer& observer);  // of the engine that this job uses
+  void makeScenes(PreparedScene& prepared, LoadedScene& loaded, Observer& observer) const;
+  CheckedProgram checkProgram(const render::DeviceScene& scene, program::CompiledProgram compiled) const;
+  std::vector<TeamMember> makeMembers(program::RunnableProgram runnable, const render::RenderSettings& settings,
+                                      Observer& observer);
+  void reportLosses(Observer& observer) const;
+  void forgetSamples();
+  bool renderRound(SamplingSchedule& schedule, const render::BatchProgress& progress);
+  double roundSeconds(const RenderLimits& limits, double elapsed) const;
+  void changeScenes(const std::function<void(render::DeviceScene&)>& change);
+  void changeRenderers(const std::function<void(render::Renderer&)>& change);
   void link(program::CompiledProgram compiled, Observer& observer);
   Provenance makeProvenance() const;
 
@@ -173,7 +193,7 @@ class RenderJob {
   // the middle of its interval.
   double shownFrame() const;
   CameraChoice chooseMovingCamera(const CameraRequest& camera, double frame) const;
-  void requireRenderer() const;  // throws Error if an edit failed
+  void requireTeam() const;  // throws Error if an edit failed
   void rebuildScene(Observer& observer);
   void editDevice();
   void updateFrame();
@@ -189,7 +209,21 @@ class RenderJob {
   void requireFrames() const;  // that animations have
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
-  bool isFrameWritten(std::uint32_t frame, Observer& observer) const;
+  // The same with a frame at a time on each of several devices (frames_on_devices.cpp).
+  bool givesFramesToDevices() const;
+  RenderResult runFramesOnDevices(const RenderLimits& limits, Observer& observer);
+  RenderResult renderAnimationFrame(std::uint32_t frame, const RenderLimits& limits, Observer& observer);
+  // Results of the frames of an animation, in their order.
+  struct FrameSequence {
+    double seconds = 0;
+    bool missed = false;
+    RenderResult last, earlier;
+  };
+  // Passes a frame on to the observer. Returns false if it is the last one, or the observer stops.
+  bool addToSequence(FrameSequence& sequence, std::uint32_t frame, RenderResult result, double seconds,
+                     Observer& observer);
+  RenderResult endSequence(FrameSequence sequence);
+  bool isFrameWritten(std::uint32_t frame, Observer& observer);
   void finishFrame(const RenderResult& frame, Observer& observer);
   RenderResult runFrames(const RenderLimits& limits, Observer& observer);
   StartPoint firstSample() const;                      // of the render or part
@@ -207,12 +241,14 @@ class RenderJob {
   std::shared_ptr<PreparedScene> scene_;
   std::vector<std::filesystem::path> includedFiles_;
   std::vector<Diagnostic> diagnostics_;
+  std::size_t deviceCount_ = 1;       // that the job uses
+  bool devicesNoted_ = false;         // why it does not use all of the engine
   std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
   bool printsNoted_ = false;          // Observer::printsDisabled() was called
   bool printsInAnySize_ = false;      // setPrint() was called: the pixels of the request can be outside of the image
   bool callsPrint_ = false;
-  std::unique_ptr<render::Renderer> renderer_;
-  mutable Provenance provenance_;  // without the facts that a result adds; see describeEdits()
+  std::unique_ptr<DeviceTeam> team_;  // null after a failed edit
+  mutable Provenance provenance_;     // without the facts that a result adds; see describeEdits()
   std::optional<Checkpoint> checkpoint_;
   StartPoint start_;                                   // of the next run()
   bool started_ = false;                               // run() was called

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace quintet::job {
@@ -76,21 +77,20 @@ bool isErrorCheckpoint(std::uint64_t batches) {
   return (batches & ((std::uint64_t{1} << shift) - 1)) == 0;
 }
 
-SamplingSchedule::SamplingSchedule(render::Renderer& renderer, const RenderLimits& limits, const StartPoint& start)
-    : renderer_(renderer),
+SamplingSchedule::SamplingSchedule(DeviceTeam& team, const RenderLimits& limits, const StartPoint& start)
+    : team_(team),
       limits_(limits),
       start_(start),
       done_(start.done),
       plan_(start.plan),
-      samples_(render::averageSamples(renderer.film().region(), renderer.film().counts())) {}
+      samples_(render::averageSamples(team.region(), team.counts())) {}
 
 std::optional<std::uint64_t> SamplingSchedule::sampleLimit() const {
   return limits_.samples ? std::optional(std::max(*limits_.samples, start_.begin) - start_.begin) : std::nullopt;
 }
 
 void SamplingSchedule::estimateError() {
-  renderer_.finish();
-  estimate_ = renderer_.film().estimateError();
+  estimate_ = team_.estimateError();
   estimatedAt_ = samples_;
 }
 
@@ -99,9 +99,10 @@ std::optional<double> SamplingSchedule::targetSamples() const {
   return expectedSamples(*estimate_, *limits_.error, estimatedAt_);
 }
 
-bool SamplingSchedule::next() {
-  if (limits_.adaptive && done_ >= pilotSamples(limits_)) return nextAdaptiveBatch();
-  return nextUniformBatch();
+bool SamplingSchedule::next(double seconds) {
+  seconds_ = seconds;
+  if (limits_.adaptive && done_ >= pilotSamples(limits_)) return nextAdaptiveBatches();
+  return nextUniformBatches();
 }
 
 bool SamplingSchedule::stopsAtError() {
@@ -112,23 +113,32 @@ bool SamplingSchedule::stopsAtError() {
   return isReached || reached_ == ReachedLimit::unknownError;
 }
 
-bool SamplingSchedule::nextUniformBatch() {
+std::uint64_t SamplingSchedule::batchesToDecision() const {
+  std::uint64_t count = std::numeric_limits<std::uint32_t>::max();
+  const std::uint64_t done = done_ / render::kBatchSamples;
+  if (limits_.adaptive) count = (pilotSamples(limits_) - done_ + render::kBatchSamples - 1) / render::kBatchSamples;
+  if (!limits_.error) return count;
+  std::uint64_t next = done + 1;
+  while (!isErrorCheckpoint(next)) ++next;
+  return std::min(count, next - done);
+}
+
+bool SamplingSchedule::nextUniformBatches() {
   const bool complete = limits_.samples && done_ >= *limits_.samples;
   if (limits_.error && (complete || isErrorCheckpoint(done_ / render::kBatchSamples)) && stopsAtError()) return false;
   if (complete) return false;
-  count_ = render::kBatchSamples;
-  if (limits_.samples) count_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(count_, *limits_.samples - done_));
-  batchSamples_ = count_;
+  count_ = render::kBatchSamples * std::min(team_.batchesWithin(seconds_), batchesToDecision());
+  if (limits_.samples) count_ = std::min(count_, *limits_.samples - done_);
+  batchSamples_ = static_cast<double>(count_);
   return true;
 }
 
-bool SamplingSchedule::nextAdaptiveBatch() {
+bool SamplingSchedule::nextAdaptiveBatches() {
   count_ = 0;
   batchSamples_ = 0;
-  if (hasRemainingBatches(plan_, renderer_.film().counts())) return true;
+  if (hasRemainingBatches(plan_, team_.counts())) return true;
   if (stopsAtError()) return false;
-  std::vector<std::uint32_t> plan =
-      planNextBatches(renderer_.film().region(), renderer_.film().counts(), *estimate_, limits_);
+  std::vector<std::uint32_t> plan = planNextBatches(team_.region(), team_.counts(), *estimate_, limits_);
   if (plan.empty()) return false;
   plan_ = std::move(plan);
   return true;
@@ -136,11 +146,11 @@ bool SamplingSchedule::nextAdaptiveBatch() {
 
 bool SamplingSchedule::render(const render::BatchProgress& progress) {
   if (count_ == 0) {
-    if (!renderer_.renderCells(plan_, progress)) return false;
-    samples_ = render::averageSamples(renderer_.film().region(), renderer_.film().counts());
+    if (!team_.renderCells(plan_, seconds_, progress)) return false;
+    samples_ = render::averageSamples(team_.region(), team_.counts());
     return true;
   }
-  if (!renderer_.renderBatch(count_, progress)) return false;
+  if (!team_.renderSamples(count_, progress)) return false;
   done_ += count_;
   samples_ = static_cast<double>(done_ - start_.begin);
   return true;

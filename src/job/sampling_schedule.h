@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides which batch is rendered next and when rendering stops: number of samples, target error, adaptive sampling.
+// Decides which batches are rendered next and when rendering stops: number of samples, target error, adaptive sampling.
 #ifndef QUINTET_JOB_SAMPLING_SCHEDULE_H
 #define QUINTET_JOB_SAMPLING_SCHEDULE_H
 
@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
+#include "job/device_team.h"
 #include "job/request.h"
 #include "render/film/adaptive_plan.h"
 #include "render/film/film_error.h"
 #include "render/film/film_file.h"
-#include "render/renderer/renderer.h"
 
 namespace quintet::job {
 
@@ -26,17 +26,18 @@ struct StartPoint {
 
 class SamplingSchedule {
  public:
-  SamplingSchedule(render::Renderer& renderer, const RenderLimits& limits, const StartPoint& start);
+  SamplingSchedule(DeviceTeam& team, const RenderLimits& limits, const StartPoint& start);
 
-  // Chooses the next batch. False: a limit is reached, except the time limit, which is not checked here.
-  bool next();
+  // Chooses the next batch, or for several devices as many as take about `seconds`, but none beyond the next decision. False: a limit
+  // is reached, except the time limit, which is not checked here.
+  bool next(double seconds = DeviceTeam::kRoundSeconds);
   ReachedLimit reached() const { return reached_; }  // after next() returned false
-  // Renders the chosen batch. False: `progress` abandoned it.
+  // Renders the chosen batches. False: `progress` abandoned them.
   bool render(const render::BatchProgress& progress);
 
   double samples() const { return samples_; }            // per pixel, on average, of this render or part
   std::uint64_t nextSample() const { return done_; }     // of all pixels
-  double batchSamples() const { return batchSamples_; }  // that the chosen batch adds; 0 if adaptive
+  double batchSamples() const { return batchSamples_; }  // that the chosen batches add; 0 if adaptive
   std::optional<std::uint64_t> sampleLimit() const;      // of samples()
   const std::optional<render::ErrorEstimate>& estimate() const { return estimate_; }  // the latest one
   // expectedSamples() by the latest estimate; unset without target error.
@@ -48,14 +49,16 @@ class SamplingSchedule {
  private:
   // Estimates the error. Returns true if it decides that rendering stops.
   bool stopsAtError();
-  bool nextUniformBatch();
-  bool nextAdaptiveBatch();
+  bool nextUniformBatches();
+  bool nextAdaptiveBatches();
+  std::uint64_t batchesToDecision() const;  // uniform ones
 
-  render::Renderer& renderer_;
+  DeviceTeam& team_;
   const RenderLimits limits_;
   const StartPoint start_;
   std::uint64_t done_;       // next sample of all pixels
-  std::uint32_t count_ = 0;  // samples of the chosen batch; 0: an adaptive batch
+  std::uint64_t count_ = 0;  // samples of the chosen batches; 0: adaptive batches
+  double seconds_ = 0;       // of next()
   std::vector<std::uint32_t> plan_;
   double samples_ = 0;
   double batchSamples_ = 0;

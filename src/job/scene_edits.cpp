@@ -3,6 +3,7 @@
 // memory and, if possible, only the affected table on the device. Everything else of the scene is rebuilt from the
 // copy.
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <span>
@@ -64,12 +65,26 @@ scene::Scene& RenderJob::editedScene() {
 }
 
 void RenderJob::restart() {
-  if (!renderer_) return;  // update() failed and is repeated by the next run()
-  renderer_->restart();
+  if (!team_) return;  // update() failed and is repeated by the next run()
+  team_->restart();
   if (prints_) prints_->restart();
+  forgetSamples();
+}
+
+void RenderJob::forgetSamples() {
   start_ = {};
   started_ = false;
   nextFrame_ = 0;
+}
+
+void RenderJob::changeScenes(const std::function<void(render::DeviceScene&)>& change) {
+  if (team_) return team_->change([&](TeamMember& member) { change(*member.scene); });
+  change(*scene_->onDevice);
+  for (const auto& scene : scene_->onFurther) change(*scene);
+}
+
+void RenderJob::changeRenderers(const std::function<void(render::Renderer&)>& change) {
+  team_->change([&](TeamMember& member) { change(*member.renderer); });
 }
 
 void RenderJob::setCamera(const CameraRequest& camera) {
@@ -79,11 +94,11 @@ void RenderJob::setCamera(const CameraRequest& camera) {
                             ? chooseMovingCamera(camera, shownFrame())
                             : chooseCamera(hostScene(), camera, aspect, job_.request.bounds);
   job_.request.camera = camera;
-  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  if (!team_) return;  // update() failed and is repeated by the next run()
   scene_->camera = chosen.camera;
   scene_->cameraDescription = std::move(chosen.description);
   restart();
-  renderer_->setCamera(scene_->camera);
+  changeRenderers([&](render::Renderer& renderer) { renderer.setCamera(scene_->camera); });
   provenanceOutdated_ = true;
 }
 
@@ -92,7 +107,7 @@ void RenderJob::setParameters(const std::vector<std::string>& assignments) {
   request.parameterFile = job_.request.parameterFile;
   request.assignments = assignments;
   program::ParameterValues values = parameterValues(job_.program, request);
-  if (renderer_) renderer_->setParameters(values);
+  if (team_) changeRenderers([&](render::Renderer& renderer) { renderer.setParameters(values); });
   job_.parameters = std::move(values);
   job_.request.assignments = assignments;
   restart();
@@ -139,8 +154,14 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
   restart();
   const DeviceForm edited = deviceForm(scene);
   const bool newTangents = scene::addTangents(scene, index);
-  sceneOutdated_ = sceneOutdated_ || newTangents || edited.facts != form.facts ||
-                   !scene_->onDevice->setMaterial(index, material);  // last, because it changes the device
+  sceneOutdated_ = sceneOutdated_ || newTangents || edited.facts != form.facts;
+  if (!sceneOutdated_) {
+    std::atomic<bool> complete{true};
+    changeScenes([&](render::DeviceScene& device) {
+      if (!device.setMaterial(index, material)) complete = false;
+    });
+    sceneOutdated_ = !complete;
+  }
   emissionOutdated_ = true;
   programOutdated_ = programOutdated_ || edited.features != form.features;
 }
@@ -148,8 +169,8 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
 void RenderJob::setPlannedSamples(std::uint32_t count) {
   job_.request.limits.samples = count;
   job_.request.frames.accumulated = count;
-  if (!renderer_) return;  // update() failed and is repeated by the next run()
-  renderer_->setPlannedSamples(count);
+  if (!team_) return;  // update() failed and is repeated by the next run()
+  changeRenderers([&](render::Renderer& renderer) { renderer.setPlannedSamples(count); });
   restart();
   provenanceOutdated_ = true;
 }
@@ -215,8 +236,13 @@ const EnvironmentRequest& RenderJob::keepEnvironment() {
 }
 
 void RenderJob::update(Observer& observer) {
-  if (!sceneOutdated_ && environmentOutdated_ && !scene_->onDevice->setEnvironment(environmentInUse()))
-    sceneOutdated_ = true;
+  if (!sceneOutdated_ && environmentOutdated_) {
+    std::atomic<bool> complete{true};
+    changeScenes([&](render::DeviceScene& device) {
+      if (!device.setEnvironment(environmentInUse())) complete = false;
+    });
+    sceneOutdated_ = !complete;
+  }
   if (sceneOutdated_) {
     rebuildScene(observer);
     updateFrame();
@@ -224,11 +250,11 @@ void RenderJob::update(Observer& observer) {
     const bool changed = !movedInstances_.empty() || emissionOutdated_ || lightsOutdated_ || environmentOutdated_;
     editDevice();
     updateFrame();
-    scene_->onDevice->updateLights();  // once for all edits
+    changeScenes([](render::DeviceScene& device) { device.updateLights(); });  // once for all edits
     if (programOutdated_)
       relink(observer);
     else if (changed)
-      renderer_->sceneChanged();
+      changeRenderers([](render::Renderer& renderer) { renderer.sceneChanged(); });
   }
   sceneOutdated_ = programOutdated_ = emissionOutdated_ = lightsOutdated_ = environmentOutdated_ = false;
   movedInstances_.clear();
@@ -239,18 +265,18 @@ void RenderJob::editDevice() {
   if (!movedInstances_.empty()) {
     std::vector<render::InstanceTransform> transforms;
     for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
-    scene_->onDevice->setTransforms(transforms);
+    changeScenes([&](render::DeviceScene& device) { device.setTransforms(transforms); });
   }
-  if (emissionOutdated_) scene_->onDevice->setEmission(*editedScene_);
-  if (lightsOutdated_) scene_->onDevice->setLights(editedScene_->lights);
+  if (emissionOutdated_) changeScenes([&](render::DeviceScene& device) { device.setEmission(*editedScene_); });
+  if (lightsOutdated_) changeScenes([&](render::DeviceScene& device) { device.setLights(editedScene_->lights); });
 }
 
 void RenderJob::updateFrame() {
   if (!std::exchange(frameOutdated_, false)) return;
-  scene_->onDevice->setFrame(shownFrame());
+  changeScenes([&](render::DeviceScene& device) { device.setFrame(shownFrame()); });
   if (!scene_->movingCameras.empty()) {
     scene_->camera = chooseMovingCamera(job_.request.camera, shownFrame()).camera;
-    renderer_->setCamera(scene_->camera);
+    changeRenderers([&](render::Renderer& renderer) { renderer.setCamera(scene_->camera); });
   }
   moveShutter();
   provenanceOutdated_ = true;
@@ -261,7 +287,7 @@ void RenderJob::releaseDevice() {
   if (editedScene_) job_.scene.loaded = editedScene_;
   // The image keeps the size that was chosen for the first camera.
   if (scene_) job_.request.size = scene_->size;
-  renderer_.reset();
+  team_.reset();
   prints_.reset();
   scene_.reset();
   plainEnvironment_.reset();
@@ -280,14 +306,15 @@ void RenderJob::rebuildScene(Observer& observer) {
 
 // Compiles the program for the features of the edited scene.
 void RenderJob::relink(Observer& observer) {
-  scene_->onDevice->setFeatures(render::sceneFeatures(hostScene(), environmentInUse()));
+  const render::SceneFeatures features = render::sceneFeatures(hostScene(), environmentInUse());
+  changeScenes([&](render::DeviceScene& device) { device.setFeatures(features); });
   observer.stage("compiling shaders");
   try {
     link(program::compile(job_.program, engine_.compiler(),
                           render::renderDefines(scene_->onDevice->defines(), job_.request.outputs)),
          observer);
   } catch (...) {  // the old program does not fit the scene
-    renderer_.reset();
+    team_.reset();
     sceneOutdated_ = true;
     throw;
   }

@@ -35,6 +35,24 @@ TEST_F(ApiRenderer, ContinuesToTheSameBytes) {
   EXPECT_EQ(renderer_.image().pixels, rendered(scene_, smallImage(), 12));
 }
 
+TEST(ApiSeveralDevices, RenderTheSameBytes) {
+  Device two({.choice = "0,0"});
+  ASSERT_EQ(two.infos().size(), 2u);
+  EXPECT_EQ(two.infos()[1].name, two.name());
+  Scene scene = lampScene();
+  Renderer renderer(two, scene, pathTracer(), smallImage());
+  renderer.render(20);
+  EXPECT_EQ(renderer.image().pixels, rendered(scene, smallImage(), 20));
+  renderer.setTransform(2, Transform::translation({-0.6f, 1, 0}));
+  renderer.render(8);
+  Renderer moved(device(), scene, pathTracer(), smallImage());
+  moved.setTransform(2, Transform::translation({-0.6f, 1, 0}));
+  moved.render(8);
+  EXPECT_EQ(renderer.image().pixels, moved.image().pixels);
+  EXPECT_THROW(Device({.choice = "0,"}), UsageError);
+  EXPECT_THROW(Device({.choice = "0,99"}), Error);
+}
+
 TEST_F(ApiRenderer, StopsWhenProgressReturnsFalse) {
   int calls = 0;
   double last = 0;

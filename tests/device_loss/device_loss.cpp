@@ -8,7 +8,8 @@ std::vector<std::pair<std::string, std::string>> environmentOf(const DeviceLoss&
           {"VK_INSTANCE_LAYERS", "VK_LAYER_QUINTET_device_loss"},
           {"QUINTET_LOSE_DEVICE", loss.kind == DeviceLoss::Kind::rendering ? "rendering" : "presenting"},
           {"QUINTET_LOSE_WHEN", loss.trigger.string()},
-          {"QUINTET_LOSE_COUNT", std::to_string(loss.count)}};
+          {"QUINTET_LOSE_COUNT", std::to_string(loss.count)},
+          {"QUINTET_FAIL_DEVICE", std::to_string(loss.failing)}};
 }
 
 }  // namespace quintet::test

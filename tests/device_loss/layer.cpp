@@ -5,6 +5,7 @@
 //   QUINTET_LOSE_DEVICE  "rendering": devices that enable ray tracing pipelines; "presenting": those with a swapchain
 //   QUINTET_LOSE_WHEN    the file
 //   QUINTET_LOSE_COUNT   number of devices of the process that are lost (1)
+//   QUINTET_FAIL_DEVICE  number of a device of this kind that cannot be created: 1 is the first one of the process (none)
 //
 // The specification of the interface is in the documentation of the Vulkan loader, LoaderLayerInterface.md.
 #include <unistd.h>
@@ -45,6 +46,7 @@ std::mutex mutex;
 std::map<Key, Instance> instances;
 std::map<Key, Device> devices;
 long lossesSoFar = 0;
+long creationsSoFar = 0;  // of losable devices
 
 const char* variable(const char* name) {
   const char* value = std::getenv(name);
@@ -67,6 +69,12 @@ bool isLosable(const VkDeviceCreateInfo& info) {
   for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i)
     if (extension == info.ppEnabledExtensionNames[i]) return true;
   return false;
+}
+
+bool failsCreation(const VkDeviceCreateInfo& info) {
+  if (!isLosable(info)) return false;
+  const std::lock_guard lock(mutex);
+  return ++creationsSoFar == std::atol(variable("QUINTET_FAIL_DEVICE"));
 }
 
 // Returns whether the device is lost at this submission or was before. A lost device executes nothing, so the work so
@@ -181,6 +189,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkD
   entry->u.pLayerInfo = entry->u.pLayerInfo->pNext;
   const VkInstance instance = findInstance(keyOf(physical)).handle;
   const auto create = reinterpret_cast<PFN_vkCreateDevice>(nextOfInstance(instance, "vkCreateDevice"));
+  if (failsCreation(*info)) return VK_ERROR_INITIALIZATION_FAILED;
   const VkResult result = create(physical, info, allocator, device);
   if (result != VK_SUCCESS) return result;
   const std::lock_guard lock(mutex);

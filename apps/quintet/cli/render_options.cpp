@@ -289,7 +289,18 @@ void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& option
 }
 
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
-  declareDevice(table, texts, options, timeoutHelp);
+  table.add("Run",
+            {{.names = "--device",
+              .value = "NAMES",
+              .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu. Several render together: a list such as 0,2; or "
+                                  "all, those of one kind",
+                                  kDeviceHelp),
+              .target = &options.device,
+              .candidates = {.names = deviceNames({"all"})}},
+             {.names = "--mixed-devices",
+              .help = "Allow different kinds of devices in --device, which can differ in the last bit of a sample",
+              .target = &options.mixedDevices},
+             {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
   table.add(
       "Run",
       {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},

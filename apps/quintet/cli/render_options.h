@@ -19,7 +19,8 @@ inline constexpr double kMaxFrames = 1e6;  // of --frame and --frames
 
 struct RenderOptions {
   std::string program = "pathtracer";
-  std::string device;
+  std::string device;  // with declareProcess() also a list
+  bool mixedDevices = false;
   job::RenderRequest request;
   output::OutputRequest output;
   std::optional<output::VideoRequest> video;  // then `output` is for the images of its frames

@@ -161,9 +161,13 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
     job::ResolvedJob resolved = job::resolve(requestFor(options, plan), program);
     if (const std::string text = output::ignoredDisplayText(options.output); !text.empty()) console.note(text);
     output::checkSize(plan, requestedSize(options.request));
-    job::Engine engine({.device = options.device, .log = [&](LogLevel level, const std::string& text) {
-                          if (level == LogLevel::warning) console.warning(text);
-                        }});
+    job::Engine engine({.device = options.device,
+                        .log =
+                            [&](LogLevel level, const std::string& text) {
+                              if (level == LogLevel::warning) console.warning(text);
+                            },
+                        .severalDevices = true,
+                        .mixedDevices = options.mixedDevices});
     job::RenderJob job(engine, std::move(resolved), console);
     output::checkSize(plan, {job.region().width, job.region().height});
     const GracefulStop stop;  // from here on, Ctrl-C completes the batch

@@ -147,7 +147,9 @@ class Watch {
                  .log =
                      [this](LogLevel level, const std::string& text) {
                        if (level == LogLevel::warning) console_.warning(text);
-                     }}),
+                     },
+                 .severalDevices = true,
+                 .mixedDevices = options.mixedDevices}),
         live_(engine_, options.program, [this] { return resolve(); }) {
     console_.isObsolete = [this] { return live_.watcher().pending(); };
     console_.displayImage = [this](const job::FilmView& film) { return output::displayImage(plan_, film); };

@@ -144,18 +144,23 @@ void Film::beginBatch(gpu::Commands& commands) {
 }
 
 void Film::endBatch(gpu::Commands& commands, SampleRange samples) {
-  addBatch(commands, samples);
+  addBatch(commands, samples, 0, region_.height);
   if (accumulation_ == Accumulation::film) counts_.add(samples);
 }
 
 void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples,
                             const std::vector<std::uint32_t>& cellBatches) {
   assert(accumulation_ == Accumulation::film && cellBatches.size() == 2 * std::size_t{tileCount(region_)});
-  addBatch(commands, samples);
+  addBatch(commands, samples, 0, region_.height);
   counts_.cellBatches = cellBatches;
 }
 
-void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
+void Film::endPart(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows) {
+  assert(accumulation_ == Accumulation::film && firstRow + rows <= region_.height);
+  addBatch(commands, samples, firstRow, rows);
+}
+
+void Film::addBatch(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows) {
   commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
   const std::uint32_t pixels = region_.width * region_.height;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -165,7 +170,9 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
       const shared::FilmFrame pass{output.total.address(), output.batch.address(), marks_.address(), pixels, 1u << i};
       dispatchPass(*frame_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     } else if (output.facts.pixel == OutputPixel::center) {
-      if (samples.begin == 0) commands.copy(output.batch, output.total, output.total.size());
+      const VkDeviceSize rowBytes = VkDeviceSize{region_.width} * sizeof(vec4);
+      if (samples.begin == 0 && rows > 0)
+        commands.copy(output.batch, output.total, rows * rowBytes, firstRow * rowBytes, firstRow * rowBytes);
     } else if (output.facts.pixel == OutputPixel::coverage) {
       const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
       dispatchPass(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);

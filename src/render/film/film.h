@@ -45,6 +45,9 @@ class Film {
   void beginBatch(gpu::Commands& commands);
   void endBatch(gpu::Commands& commands, SampleRange samples);
   void endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches);
+  // The same for a part of a batch: rows [firstRow, firstRow + rows), or any pixels of it without OutputPixel::center. The
+  // samples are not counted (counts()): other films have the rest of the batch.
+  void endPart(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows);
 
   // Reads the current contents of one output. Blocks.
   FilmPlane plane(std::size_t output) const { return plane(outputs_.at(output)); }
@@ -76,7 +79,7 @@ class Film {
     bool stored = false;
     gpu::Buffer batch, total, squares;  // `total` is empty for an output that is not stored
   };
-  void addBatch(gpu::Commands& commands, SampleRange samples);
+  void addBatch(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows);
   FilmPlane plane(const Output& output) const;
   struct Rows {
     std::uint32_t first, count;

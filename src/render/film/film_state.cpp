@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/error.h"
@@ -47,6 +48,26 @@ void mergeCoverage(shared::CoverageSlot* into, const shared::CoverageSlot* from)
       merged[count++] = from[b++];
   }
   std::copy_n(merged.begin(), shared::kCoverageSlots, into);
+}
+
+// Adds everything but counts and values.
+void addSums(FilmState& film, const FilmState& part) {
+  const auto addFixedSums = [](std::vector<shared::FixedSum>& into, const std::vector<shared::FixedSum>& from) {
+    parallelRanges(into.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) into[i] = addFixed(into[i], from[i]);
+    });
+  };
+  for (std::size_t p = 0; p < film.planes.size(); ++p) {
+    FilmPlane& into = film.planes[p];
+    const FilmPlane& from = part.planes[p];
+    addFixedSums(into.sums, from.sums);
+    addFixedSums(into.squares, from.squares);
+    parallelRanges(into.coverage.size() / shared::kCoverageSlots, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        mergeCoverage(&into.coverage[i * shared::kCoverageSlots], &from.coverage[i * shared::kCoverageSlots]);
+    });
+  }
+  for (std::size_t i = 0; i < film.statistics.size(); ++i) film.statistics[i] += part.statistics[i];
 }
 
 bool hasSampleZero(const SampleCounts& counts) { return !counts.ranges.empty() && counts.ranges.front().begin == 0; }
@@ -228,16 +249,22 @@ void mergeFilm(FilmState& film, const FilmState& part) {
   for (const SampleRange& range : part.counts.ranges) counts.add(range);
   const bool takesCenters = hasSampleZero(part.counts);
   film.counts = counts;
+  addSums(film, part);
+  if (takesCenters)
+    for (std::size_t p = 0; p < film.planes.size(); ++p) film.planes[p].values = part.planes[p].values;
+}
+
+void addFilm(FilmState& film, const FilmState& part) {
+  assert(sameArrays(film, part));
+  addSums(film, part);
+  constexpr std::array<std::byte, sizeof(vec4)> kUnset{};
   for (std::size_t p = 0; p < film.planes.size(); ++p) {
-    FilmPlane& into = film.planes[p];
-    const FilmPlane& from = part.planes[p];
-    for (std::size_t i = 0; i < into.sums.size(); ++i) into.sums[i] = addFixed(into.sums[i], from.sums[i]);
-    for (std::size_t i = 0; i < into.squares.size(); ++i) into.squares[i] = addFixed(into.squares[i], from.squares[i]);
-    for (std::size_t i = 0; i < into.coverage.size(); i += shared::kCoverageSlots)
-      mergeCoverage(&into.coverage[i], &from.coverage[i]);
-    if (takesCenters) into.values = from.values;
+    std::vector<vec4>& values = film.planes[p].values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const vec4& value = part.planes[p].values[i];
+      if (std::memcmp(&value, kUnset.data(), sizeof value) != 0) values[i] = value;
+    }
   }
-  for (std::size_t i = 0; i < film.statistics.size(); ++i) film.statistics[i] += part.statistics[i];
 }
 
 }  // namespace quintet::render

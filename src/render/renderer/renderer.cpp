@@ -250,17 +250,40 @@ bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const Batch
   assert(program().adaptive && limits.size() == 2 * std::size_t{tileCount(film_.region())});
   const AdaptiveBatch next = nextAdaptiveBatch(film_.region(), film_.counts(), limits);
   assert(!next.tiles.empty());
-  // The buffer is written directly, without a copy to wait for, so that earlier launches can stay in flight.
-  const auto bytes = std::as_bytes(std::span(next.tiles));
-  tileBuffer_ = gpu::Buffer(context_, {.size = bytes.size(), .memory = gpu::Memory::upload, .name = "film tiles"});
-  std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
-  const Target target{shared::kTileSize * shared::kTileSize,
-                      static_cast<std::uint32_t>(next.tiles.size()),
-                      {0, 0},
-                      tileBuffer_.address()};
+  const Target target = tileTarget(next.tiles);
   const SampleRange samples = batchSamples(next.batch, kBatchSamples);
   const Record end = [&](gpu::Commands& commands) { film_.endAdaptiveBatch(commands, samples, next.counts); };
   return renderSamples(target, samples, end, progress);
+}
+
+Renderer::Target Renderer::tileTarget(std::span<const shared::FilmTile> tiles) {
+  // The buffer is written directly, without a copy to wait for, so that earlier launches can stay in flight.
+  const auto bytes = std::as_bytes(tiles);
+  tileBuffer_ = gpu::Buffer(context_, {.size = bytes.size(), .memory = gpu::Memory::upload, .name = "film tiles"});
+  std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
+  return {
+      shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer_.address()};
+}
+
+bool Renderer::renderPart(const Part& part, const BatchProgress& progress) {
+  assert(!accumulates() && part.count > 0);
+  const bool adaptive = !part.tiles.empty();
+  Target target = adaptive ? tileTarget(part.tiles.subspan(part.first, part.count)) : wholeRegion();
+  if (!adaptive) {
+    target.offset.y += part.first;
+    target.height = part.count;
+  }
+  const Record end = [&](gpu::Commands& commands) {
+    film_.endPart(commands, part.samples, adaptive ? 0 : part.first, adaptive ? 0 : part.count);
+  };
+  return renderSamples(target, part.samples, end, progress);
+}
+
+FilmState Renderer::takeFilm() {
+  FilmState state = saveFilm();
+  state.counts = {};
+  film_.clear();
+  return state;
 }
 
 void Renderer::finishLaunches() const {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "program/linked/linked_program.h"
@@ -47,6 +48,19 @@ class Renderer {
   // (SampleCounts::cellBatches) that have the fewest batches among those below `limits`. Asserts that one is below its
   // limit. Returns false if the batch was canceled.
   bool renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress = {});
+
+  // A batch that several devices share: each renders parts of it, and their films are added up (addFilm). Renders rows
+  // [first, first + count) of the region, or tiles [first, first + count) of `tiles` if there are any (AdaptiveBatch::tiles),
+  // and does not count the samples (Film::counts). Not for programs that accumulate. Returns false if it was canceled.
+  struct Part {
+    SampleRange samples;  // of the batch
+    std::span<const shared::FilmTile> tiles;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+  bool renderPart(const Part& part, const BatchProgress& progress = {});
+  // Reads the film, without counts, and discards its samples. Blocks.
+  FilmState takeFilm();
 
   // Sets the batch that renderBatch() renders next, for parts of a render.
   void startAt(std::uint64_t batch) { nextBatch_ = batch; }
@@ -126,6 +140,7 @@ class Renderer {
   bool storesMotion() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
   Target wholeRegion() const;
+  Target tileTarget(std::span<const shared::FilmTile> tiles);  // uploads the tiles
   Record recordBegin();
   // Launches a strip of the target with `count` samples from `first` on.
   void launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples, const Record& before,

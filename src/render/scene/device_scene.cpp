@@ -46,6 +46,14 @@ void padTables(LightTable& table) {
 
 DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
                          const DeviceSceneOptions& options)
+    : DeviceScene(context, scene, &scene, environment, options) {}
+
+DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment,
+                         const DeviceSceneOptions& options)
+    : DeviceScene(context, scene, nullptr, environment, options) {}
+
+DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, scene::Scene* consumed,
+                         const scene::Environment& environment, const DeviceSceneOptions& options)
     : context_(context),
       options_(options),
       nodeAnimation_(scene.nodeAnimation),
@@ -62,8 +70,8 @@ DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scen
     const VkDeviceSize limit = VkDeviceSize{context.info().software ? 8u : 64u} << 20;
     const VkDeviceSize bytes = textureUploadBytes(scene) + geometryUploadBytes(context, scene);
     gpu::Uploader uploader(context, std::min(2 * bytes, limit));
-    uploadMaterials(scene, environment, uploader);
-    geometry_ = uploadGeometries(context, uploader, scene);
+    uploadMaterials(scene, consumed, environment, uploader);
+    geometry_ = uploadGeometries(context, uploader, scene, consumed);
     uploader.flush();
   }
   releaseFreedMemory();
@@ -175,8 +183,9 @@ void DeviceScene::setEnvironmentPower(double integral) {
   lightsOutdated_ = true;
 }
 
-void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
-  textures_.emplace(context_, uploader, scene);
+void DeviceScene::uploadMaterials(const scene::Scene& scene, scene::Scene* consumed,
+                                  const scene::Environment& environment, gpu::Uploader& uploader) {
+  textures_.emplace(context_, uploader, scene, consumed);
   const TextureIndex expect = [&](int texture, bool sRgb) { return textures_->expect(texture, sRgb), 0u; };
   for (const scene::Material& material : scene.materials) makeMaterial(material, expect);
   std::vector<shared::MaterialData> materials;

@@ -71,6 +71,9 @@ class DeviceScene {
   // memory once. `environment` is the one in use: the scene's, the user's, or the default.
   DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
               const DeviceSceneOptions& options = {});
+  // The same without changing `scene`, which several devices can read at the same time.
+  DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment,
+              const DeviceSceneOptions& options = {});
   DeviceScene(const DeviceScene&) = delete;
   DeviceScene& operator=(const DeviceScene&) = delete;
 
@@ -136,6 +139,10 @@ class DeviceScene {
     gpu::Buffer entries;
   };
 
+  // `consumed`: null, or the scene itself, to be freed.
+  DeviceScene(gpu::Context& context, const scene::Scene& scene, scene::Scene* consumed,
+              const scene::Environment& environment, const DeviceSceneOptions& options);
+
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
   void moveEnvironment(const scene::Pose& pose);
@@ -148,7 +155,8 @@ class DeviceScene {
   void changeMaterials(const scene::Pose& pose);
   void moveEmitters();  // in the builder, to the deformed vertices
   void uploadLightTable(LightTable& table);
-  void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
+  void uploadMaterials(const scene::Scene& scene, scene::Scene* consumed, const scene::Environment& environment,
+                       gpu::Uploader& uploader);
   MeshArrays downloadMesh(std::size_t mesh, std::size_t geometry) const;
   bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the

@@ -162,15 +162,18 @@ VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene
   return bytes;
 }
 
-GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene) {
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene,
+                                scene::Scene* consumed) {
   GeometryUpload upload;
   Arena arena(context, uploader, upload, arraySizes(scene));
-  for (scene::Mesh& mesh : scene.meshes) {
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const scene::Mesh& mesh = scene.meshes[m];
     upload.firstGeometry.push_back(static_cast<std::uint32_t>(upload.geometries.size()));
-    for (scene::Geometry& geometry : mesh.geometries) {
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       GeometryArrays& arrays = upload.arrays.emplace_back();
-      upload.geometries.push_back(uploadTriangles(arena, scene, geometry, arrays, upload.slots.emplace_back()));
-      freeArrays(geometry, arrays);
+      upload.geometries.push_back(
+          uploadTriangles(arena, scene, mesh.geometries[g], arrays, upload.slots.emplace_back()));
+      if (consumed) freeArrays(consumed->meshes[m].geometries[g], arrays);
     }
     for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
       upload.arrays.emplace_back();

@@ -69,8 +69,10 @@ HostArray<T> readArray(const GeometryUpload& upload, const ArraySlot& slot) {
   return array;
 }
 
-// Uploads all geometries, and frees each array of the scene that GeometryUpload::arrays does not refer to.
-GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);
+// Uploads all geometries. `consumed`: null, or the scene itself, of which each array is freed that GeometryUpload::arrays
+// does not refer to.
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene,
+                                scene::Scene* consumed);
 
 }  // namespace quintet::render
 #endif

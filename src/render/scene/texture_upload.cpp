@@ -56,8 +56,9 @@ VkDeviceSize textureUploadBytes(const scene::Scene& scene) {
   return bytes;
 }
 
-TextureUpload::TextureUpload(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene)
-    : context_(context), uploader_(uploader), scene_(scene) {}
+TextureUpload::TextureUpload(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene,
+                             scene::Scene* consumed)
+    : context_(context), uploader_(uploader), scene_(scene), consumed_(consumed) {}
 
 void TextureUpload::expect(int texture, bool sRgb) {
   const int image = scene_.textures[static_cast<std::size_t>(texture)].image;
@@ -66,8 +67,8 @@ void TextureUpload::expect(int texture, bool sRgb) {
 
 void TextureUpload::freeImage(int image, bool sRgb) {
   expected_.erase({image, sRgb});
-  if (expected_.contains({image, !sRgb})) return;
-  std::vector<std::byte>().swap(scene_.images[static_cast<std::size_t>(image)].image.data);
+  if (!consumed_ || expected_.contains({image, !sRgb})) return;
+  std::vector<std::byte>().swap(consumed_->images[static_cast<std::size_t>(image)].image.data);
 }
 
 std::optional<std::uint32_t> TextureUpload::find(int texture, bool sRgb) const {

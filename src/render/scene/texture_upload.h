@@ -31,8 +31,9 @@ VkDeviceSize textureUploadBytes(const scene::Scene& scene);
 // The textures of a scene on the device: one for each requested combination of image, encoding and sampler.
 class TextureUpload {
  public:
-  // Frees the pixels of each image of `scene` once they are uploaded in all encodings that expect() announced.
-  TextureUpload(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);
+  // `consumed`: null, or the scene itself: then the pixels of each image are freed once they are uploaded in all encodings that
+  // expect() announced.
+  TextureUpload(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* consumed);
   // Announces a later index(). All announcements come before the first index().
   void expect(int texture, bool sRgb);
   // Returns the bindless index of a texture of the scene; uploads its image on the first call.
@@ -62,7 +63,8 @@ class TextureUpload {
 
   gpu::Context& context_;
   gpu::Uploader& uploader_;
-  scene::Scene& scene_;
+  const scene::Scene& scene_;
+  scene::Scene* consumed_;
   std::set<std::pair<int, bool>> expected_;
   std::deque<gpu::Image> images_;
   std::deque<std::pair<gpu::SamplerOptions, gpu::Sampler>> samplers_;

@@ -13,6 +13,7 @@
 #include "../program/run_program.h"
 #include "harness.h"
 #include "program/description/parser.h"
+#include "render/film/adaptive_plan.h"
 #include "render/film/film_error.h"
 #include "render/film/film_file.h"
 #include "render/film/fixed_sum.h"
@@ -289,6 +290,39 @@ TEST_F(FilmTest, MergesAndResumesToTheSameBytes) {
   resumed.renderBatch(2);
   EXPECT_TRUE(sameBytes(resumed.saveFilm(), whole.saveFilm()));
   EXPECT_EQ(resumed.statistics().samples, 14u);
+}
+
+// Two renderers share batches: rows of the first three, tiles of an adaptive one.
+TEST_F(FilmTest, PartsOfBatchesAddUpToTheSameBytes) {
+  const std::vector<std::string> outputs{"depth", "ids"};
+  render::Renderer whole = renderer(outputs), first = renderer(outputs), second = renderer(outputs);
+  for (const std::uint32_t count : {4u, 4u, 4u}) whole.renderBatch(count);
+  const std::vector<std::uint32_t> limits{3, 4, 4, 3};
+  const render::AdaptiveBatch adaptive =
+      render::nextAdaptiveBatch(whole.film().region(), whole.film().counts(), limits);
+  ASSERT_EQ(adaptive.tiles.size(), 2u);
+  ASSERT_TRUE(whole.renderCells(limits));
+
+  const std::uint32_t rows = whole.film().region().height;
+  for (std::uint32_t batch = 0; batch < 3; ++batch) {
+    const render::SampleRange samples{4 * batch, 4 * batch + 4};
+    const std::uint32_t cut = 1 + batch % 2;
+    ASSERT_TRUE(second.renderPart({samples, {}, 0, cut}));
+    ASSERT_TRUE(first.renderPart({samples, {}, cut, 2}));
+    ASSERT_TRUE(second.renderPart({samples, {}, cut + 2, rows - cut - 2}));
+  }
+  ASSERT_TRUE(first.renderPart({{12, 16}, adaptive.tiles, 1, 1}));
+  ASSERT_TRUE(second.renderPart({{12, 16}, adaptive.tiles, 0, 1}));
+  render::FilmState joined = second.takeFilm();
+  render::addFilm(joined, first.takeFilm());
+  joined.counts = whole.film().counts();
+  EXPECT_TRUE(sameBytes(joined, whole.saveFilm()));
+  EXPECT_TRUE(first.film().counts().ranges.empty());
+
+  render::FilmState again = first.takeFilm();
+  render::addFilm(joined, again);
+  joined.counts = whole.film().counts();
+  EXPECT_TRUE(sameBytes(joined, whole.saveFilm())) << "takeFilm() discards the samples";
 }
 
 TEST_F(FilmTest, CountsBatchesPerCell) {

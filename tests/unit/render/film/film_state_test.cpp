@@ -123,6 +123,23 @@ TEST(FilmState, RejectsDuplicateSamplesWithoutChange) {
   EXPECT_TRUE(sameBytes(film, maker.film({0, 1})));
 }
 
+// The films of devices that share batches: none has the counts, and each has the center values of some pixels.
+TEST(FilmState, AddsFilmsOfSharedBatches) {
+  const Maker maker(6);
+  const FilmState whole = maker.film({0, 1, 2, 3, 4, 5});
+  for (const bool reversed : {false, true}) {
+    FilmState first = maker.film({3, 0, 4}), second = maker.film({1, 2, 5});
+    second.planes[1].values = first.planes[1].values;
+    for (std::size_t p = 0; p < 15; ++p) (p < 7 ? first : second).planes[1].values[p] = vec4(0.0f);
+    first.counts = second.counts = {};
+    if (reversed) std::swap(first, second);
+    addFilm(first, second);
+    EXPECT_TRUE(first.counts.ranges.empty());
+    first.counts = whole.counts;
+    EXPECT_TRUE(sameBytes(first, whole));
+  }
+}
+
 TEST(FilmState, ComputesMeansAndVariancesFromBatches) {
   const int count = 12;
   const Maker maker(count);
