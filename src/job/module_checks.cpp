@@ -117,8 +117,7 @@ class ModuleSet {
     collectModules(name, found);
     std::ranges::sort(found);
     if (found.empty())
-      problems.push_back(errorIn(name,
-                                 "the folder contains no SPIR-V file; compile the shaders to SPIR-V first"));
+      problems.push_back(errorIn(name, "the folder contains no SPIR-V file; compile the shaders to SPIR-V first"));
     for (const fs::path& path : found)
       addFile(path.string(), name, fs::relative(path, name, failed).generic_string(), problems);
   }
