@@ -134,7 +134,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Declare the struct once, in a file that both stages include.", "struct"},
     {"Q302", kError, "across_stages/arguments", "callable index is out of range",
      "The device reads a shader handle outside of the table and jumps to it.",
-     "Use an index below the number of callables in program.toml.", "sbt shader binding table", kOfScene},
+     "Use an index below the number of callable shaders.", "sbt shader binding table program.toml", kOfScene},
     {"Q303", kNote, "across_stages/payload_types",
      "callable data location differs between the call and the callable shader",
      "Only the location of the call counts; a different location of callableDataInEXT is ignored but misleads readers.",
@@ -151,11 +151,12 @@ constexpr DiagnosticInfo kCatalog[] = {
      "recursion max_recursion depth stack"},
     {"Q402", kError, "across_stages/recursion", "recursion is deeper than declared or than the device allows",
      "A trace beyond maxPipelineRayRecursionDepth is undefined.",
-     "Reduce the depth, increase max_recursion, or replace the recursion by a loop in the ray generation shader.",
+     "Reduce the depth, increase max_recursion (maxPipelineRayRecursionDepth), or replace the recursion by a loop in "
+     "the ray generation shader.",
      "max_recursion depth stack"},
     {"Q403", kError, "across_stages/endless_recursion", "trace that always runs closes a cycle",
      "max_recursion is a promise of the program; a ray that recurses further overwrites memory, or the device is lost.",
-     "Trace only while a depth in the payload is below max_recursion.",
+     "Trace only while a depth in the payload is below the declared depth (max_recursion).",
      "recursion max_recursion endless infinite loop"},
 
     // The shader binding table.
@@ -165,7 +166,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "sbt shader binding table offset stride", kOfScene},
     {"Q502", kError, "across_stages/arguments", "miss index is out of range",
      "The device reads a shader handle outside of the table and jumps to it.",
-     "Use kMiss_NAME, which is generated from program.toml.", "sbt shader binding table"},
+     "Use an index of the miss table: kMiss_NAME in programs of Quintet.", "sbt shader binding"},
     {"Q503", kError, "across_stages/arguments", "offset or stride of the hit records exceeds 4 bits",
      "The device uses only the low 4 bits, so a different record is selected silently.", "Keep both between 0 and 15.",
      "sbt shader binding table"},
@@ -178,7 +179,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q506", kWarning, "across_stages/arguments", "shadow ray uses the miss shader of radiance rays",
      "With closest-hit shaders skipped, only the miss shader returns a result, and this one writes a color, not "
      "visibility.",
-     "Add a ray type with its own miss shader, and pass its kMiss_NAME.", "visibility"},
+     "Pass the index of a miss shader that returns visibility: kMiss_NAME of a ray type of its own.", ""},
     {"Q507",
      kWarning,
      "across_stages/ray_arguments",
@@ -217,6 +218,10 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q514", kWarning, "within_stage/ray_lengths", "ray direction is not normalized although tmax is its length",
      "The unit of t is the length of the direction, so the ray ends at the square of the length.",
      "Normalize the direction, or use a tmax of 1 with the direction as it is.", "normalize"},
+    {"Q515", kError, "across_stages/hit_records", "hit record is beyond the hit table",
+     "The device reads a shader handle behind the table and jumps to it.",
+     "Check the record offset of the instance, the offset and the stride of the trace, and the number of hit records.",
+     "sbt shader binding instanceShaderBindingTableRecordOffset", kOfScene},
 
     // Hit groups and geometry.
     {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
@@ -254,6 +259,15 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q608", kWarning, "across_stages/hit_kinds", "reported hit kind is above 127",
      "Vulkan allows 0 to 127 and reserves larger values for triangles; drivers can use only 7 bits.",
      "Number the kinds of the program from 0, and pass other data as a hit attribute.", "gl_HitKindEXT"},
+    {"Q609", kError, "across_stages/hit_records", "geometry and its hit group are of different kinds",
+     "Boxes need a procedural hit group, and triangles a hit group without an intersection shader; all else is "
+     "undefined.",
+     "Check the record offset of the instance and the order of the hit groups in the shader binding table.",
+     "procedural triangles aabb intersection", kOfScene},
+    {"Q610", kWarning, "across_stages/hit_records", "ray flags exclude an any-hit shader from all traces",
+     "With gl_RayFlagsOpaqueEXT or gl_RayFlagsCullNoOpaqueEXT no any-hit shader runs: what it tests looks solid.",
+     "Remove the flag from the traces that need the shader, or the shader from the hit group.",
+     "opaque alpha transparent gl_RayFlagsOpaqueEXT"},
 
     // Resources.
     {"Q651", kError, "across_stages/resources", "resource that Quintet does not provide",
@@ -270,6 +284,34 @@ constexpr DiagnosticInfo kCatalog[] = {
      "The records hold only shader handles, so the block reads the next record or memory behind the table.",
      "Declare the fields as [[record]] in program.toml, and include <quintet/generated/record.glsl>.",
      "sbt binding table"},
+
+    // Shader binding tables of applications (the layer in layer/).
+    {"Q661", kError, "check/modules/table_check", "record has a handle of a different pipeline",
+     "The handle belongs to a different or destroyed pipeline, or is no handle: the device jumps to an unknown shader.",
+     "Write the table again whenever the pipeline is created again, and copy handles with shaderGroupHandleSize.",
+     "sbt shader binding table vkGetRayTracingShaderGroupHandlesKHR"},
+    {"Q662", kError, "check/modules/table_check", "record has a handle for a different region",
+     "A region runs only shaders of its kind, so the device runs a shader with data that it does not expect.",
+     "Check the order of the groups from which the handles are copied to the regions.",
+     "sbt shader binding table miss hit callable"},
+    {"Q663", kError, "check/modules/table_check", "ray generation record is empty",
+     "The launch runs no shader, or an unknown one.", "Write the handle of the ray generation group to the region.",
+     "sbt shader binding table null handle"},
+    {"Q664", kError, "check/modules/table_check", "address, stride or size of a region is invalid",
+     "The device reads handles at wrong addresses.",
+     "Align regions to shaderGroupBaseAlignment and strides to shaderGroupHandleAlignment.",
+     "sbt shader binding table VkStridedDeviceAddressRegionKHR alignment"},
+    {"Q665", kError, "check/modules/table_check", "region is larger than its buffer",
+     "The device reads handles and data behind the buffer.", "Make the buffer larger, or the region smaller.",
+     "sbt shader binding table size"},
+    {"Q666", kError, "check/modules/table_check", "record is shorter than the shader record block",
+     "The shader reads the next record, or memory behind the table.",
+     "Use a stride of at least the size of the handle plus that of the block, aligned to the handle alignment.",
+     "sbt binding table stride shaderRecordEXT"},
+    {"Q667", kError, "check/modules/stack_check", "stack is smaller than the traces and calls need",
+     "A stack that is too small is overwritten by nested shaders, or the device is lost.",
+     "Set the size to the sum of the stack sizes of the shaders along the longest chain of traces and calls.",
+     "vkCmdSetRayTracingPipelineStackSizeKHR recursion depth"},
 
     // Shading mistakes.
     {"Q701", kError, "within_stage/distance", "normalized object-space direction is used for t",
@@ -344,7 +386,7 @@ constexpr DiagnosticInfo kCatalog[] = {
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",
-     "Trace or call it, or remove it from program.toml.", "unused dead"},
+     "Trace or call it, or remove it from the pipeline.", "unused dead"},
     {"Q802", kWarning, "across_stages/unused", "hit group matches no geometry of the scene",
      "The group has no effect: a name is misspelled, or the program was written for a different scene.",
      "Compare geometry, material and primitives of the group with `quintet info SCENE`.", "unused material name",

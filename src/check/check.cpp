@@ -5,41 +5,45 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "check/flow/pipeline_spaces.h"
 #include "check/rules/rules.h"
 
 namespace quintet::check {
 namespace {
 
 // A wrong argument of a trace or call leaves stages unreachable. Only the argument is reported then.
-constexpr std::array<std::string_view, 9> kWrongArgument{"Q302", "Q501", "Q502", "Q503", "Q504",
-                                                         "Q506", "Q507", "Q513", "Q605"};
+constexpr std::array<std::string_view, 10> kWrongArgument{"Q302", "Q501", "Q502", "Q503", "Q504",
+                                                          "Q506", "Q507", "Q513", "Q515", "Q605"};
 
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
 
-bool hasAnyHit(const program::Program& program, const std::string& intersection) {
-  return std::ranges::any_of(program.hitGroups, [&](const program::HitGroup& group) {
+bool hasAnyHit(const PipelineGraph& graph, const std::string& intersection) {
+  return std::ranges::any_of(graph.groups.hitGroups, [&](const program::HitGroup& group) {
     return std::ranges::any_of(group.shaders, [&](const auto& entry) {
       return entry.second.intersection == intersection && !entry.second.anyHit.empty();
     });
   });
 }
 
-void runRulesWithinStages(const CheckInput& input, Report& report) {
+// A null `program` for raw modules.
+void runRulesWithinStages(const CheckInput& input, const ProgramStageContext* program, Report& report) {
   const PipelineGraph& graph = input.graph;
   std::vector<std::vector<Diagnostic>> found(graph.stages.size());
   parallelFor(graph.stages.size(), [&](std::size_t i) {
     const PipelineStage& stage = graph.stages[i];
     if (!stage.facts) return;
-    const StageContext context{graph.program.keepsInstanceOrder, hasAnyHit(graph.program, stage.file),
-                               input.limits.defects};
+    const StageContext context{graph.usesLibrary, hasAnyHit(graph, stage.file), input.limits.defects};
     found[i] = checkStage(stage.facts->module(), context);
+    if (program) std::ranges::move(checkProgramStage(stage.facts->module(), *program), std::back_inserter(found[i]));
   });
   for (std::size_t i = 0; i < found.size(); ++i)
     for (Diagnostic& d : found[i])
@@ -47,7 +51,8 @@ void runRulesWithinStages(const CheckInput& input, Report& report) {
                  std::move(d.related));
 }
 
-RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
+// The rules that hold for every pipeline.
+RecursionNeeds runGeneralRules(const CheckInput& input, const PipelineSpaces& spaces, Report& report) {
   checkPayloadTypes(input, report);
   checkPayloadMembers(input, report);
   checkPayloadInputs(input, report);
@@ -59,21 +64,39 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkEndlessRecursion(input, report);
   checkArguments(input, report);
   checkRayArguments(input, report);
-  checkGeometry(input, report);
   checkHitKinds(input, report);
-  checkResources(input, report);
   checkRayOrigins(input, report);
   checkHitPositions(input, report);
   checkMissDistances(input, report);
-  checkRandomSeeds(input, report);
   checkArrayIndices(input, report);
-  checkSpaces(input, report);
+  checkSpaces(input, spaces, report);
+  return needs;
+}
+
+// The rules that depend on Quintet's layout, library and descriptions.
+void runProgramRules(const ProgramInput& input, const PipelineSpaces& spaces, Report& report) {
+  checkSharedLocations(input, report);
+  checkRecordLayout(input, report);
+  checkStrides(input, report);
+  checkGeometry(input, report);
+  checkResources(input, report);
+  checkRandomSeeds(input, report);
+  checkColorEncoding(input, spaces, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
-  if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongArgument))
-    checkUnreachableStages(input, report);
   checkUnusedHitGroups(input, report);
   checkOutputs(input, report);
-  return needs;
+}
+
+void checkUnreachable(const CheckInput& input, Report& report) {
+  if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongArgument))
+    checkUnreachableStages(input, report);
+}
+
+std::set<std::size_t> usedGroups(const program::Program& program, const program::SceneFacts& facts) {
+  std::set<std::size_t> groups;
+  for (const program::GeometryFacts& geometry : facts.geometries)
+    groups.insert(program::hitGroupFor(program, geometry));
+  return groups;
 }
 
 // Without the suppressions.
@@ -88,10 +111,15 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
     const PipelineGraph graph(program, compiled);
     const std::optional<program::SceneFacts> facts =
         scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
-    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
+    ProgramInput input{{graph, facts ? &*facts : nullptr, limits, featureDefines}, program, compiled.outputs};
+    if (facts) input.usedGroups = usedGroups(program, *facts);
+    const ProgramStageContext ofStages{program.keepsInstanceOrder};
+    const PipelineSpaces spaces(graph);
     Report report;
-    runRulesWithinStages(input, report);
-    const RecursionNeeds needs = runRulesAcrossStages(input, report);
+    runRulesWithinStages(input, &ofStages, report);
+    const RecursionNeeds needs = runGeneralRules(input, spaces, report);
+    runProgramRules(input, spaces, report);
+    checkUnreachable(input, report);
     result.recursionDepth = needs.depth;
     result.stackBytes = needs.stackBytes;
     result.cyclic = needs.cyclic;
@@ -105,6 +133,41 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
   }
   result.seconds = compiled.seconds + clock.seconds();
   return result;
+}
+
+// The rules that compare what is known, if a stage cannot be analyzed.
+void runRulesOfKnownStages(const CheckInput& input, Report& report) {
+  checkPayloadTypes(input, report);
+  checkHitAttributes(input, report);
+  checkCallableTypes(input, report);
+  checkArguments(input, report);
+  checkRayArguments(input, report);
+  checkHitRecords(input, report);
+}
+
+std::optional<program::SceneFacts> factsOf(const PipelineGroups& groups) {
+  if (!groups.instances) return {};
+  program::SceneFacts facts{"the acceleration structure", groups.geometries, {}};
+  for (const InstanceRecords& instance : *groups.instances) facts.instances.push_back(instance.facts);
+  return facts;
+}
+
+void replaceAll(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+// Moves the SPIR-V id of an unknown line from the file to the text.
+void nameIds(Diagnostic& d) {
+  for (std::size_t at = d.text.find(spirv::kIdMark); at != d.text.npos; at = d.text.find(spirv::kIdMark, at)) {
+    d.text.replace(at, 1, " (");
+    const std::size_t end = d.text.find(":0", at);
+    if (end != d.text.npos) d.text.replace(end, 2, ")");
+  }
+  for (const char* unknown : {" (line 0)", " in line 0"}) replaceAll(d.text, unknown, "");
+  const auto [file, id] = spirv::splitIdLocation(d.file);
+  d.file = file;
+  if (!id.empty()) d.text += fmt::format(" ({})", id);
 }
 
 // Moves the diagnostics that comments accept to CheckResult::suppressed. `complete`: the check saw all code, so it knows
@@ -199,19 +262,26 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   const auto stage = module.stage();
   if (!stage) return {};
   const bool intersection = stage == Model::IntersectionKHR;
-  const bool hit = intersection || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
   if (intersection) checkDistance(module, report);
-  if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
   checkPrintFormats(module, report);
-  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
-  checkPixelDivision(module, report);
+  checkPixelDivision(module, context.usesLibrary, report);
   checkRayLengths(module, report);
-  if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
   if (defects.corruptsHitAttributes && intersection) checkAttributeWrites(module, report);
   if (defects.sharesLocalArrays && intersection && context.hasAnyHit) checkLocalArrays(module, report);
+  return report.take();
+}
+
+std::vector<Diagnostic> checkProgramStage(const spirv::Module& module, const ProgramStageContext& context) {
+  using Model = spv::ExecutionModel;
+  Report report;
+  const auto stage = module.stage();
+  const bool hit = stage == Model::IntersectionKHR || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
+  if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
+  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
+  if (stage == Model::IntersectionKHR) checkRayTmaxReads(module, report);
   return report.take();
 }
 
@@ -227,6 +297,37 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
   const bool features =
       std::ranges::any_of(defines, [](const auto& define) { return define.first.starts_with("QUINTET_NO_"); });
   return check(program, compile(program, compiler, defines), scene, limits, features);
+}
+
+CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits) {
+  const Stopwatch clock;
+  const PipelineGraph graph(std::move(groups), modules);
+  const std::optional<program::SceneFacts> facts = factsOf(graph.groups);
+  const CheckInput input{graph, facts ? &*facts : nullptr, limits};
+  Report report;
+  runRulesWithinStages(input, nullptr, report);
+  CheckResult result;
+  result.recursionDepth = graph.groups.declaredRecursion.value_or(1);
+  if (graph.error.empty()) {
+    const RecursionNeeds needs = runGeneralRules(input, PipelineSpaces(graph), report);
+    result.recursionDepth = needs.depth;
+    result.stackBytes = needs.stackBytes;
+    result.cyclic = needs.cyclic;
+    for (const std::size_t stage : needs.chain) result.chain.push_back(graph.stages[stage].file);
+    checkHitRecords(input, report);
+    if (!graph.groups.rayGenerations.empty()) checkUnreachable(input, report);
+    for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
+  } else {
+    runRulesOfKnownStages(input, report);
+  }
+  result.diagnostics = report.take();
+  std::ranges::for_each(result.diagnostics, nameIds);
+  for (std::size_t i = 0; i < modules.size(); ++i)
+    if (!graph.stages[i].facts && modules[i].problem.empty())
+      result.diagnostics.push_back(
+          {Severity::note, modules[i].name, 0, 0, "", "not checked: " + graph.stages[i].problem, {}});
+  result.seconds = clock.seconds();
+  return result;
 }
 
 CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,

@@ -4,7 +4,10 @@
 #ifndef QUINTET_CHECK_CHECK_H
 #define QUINTET_CHECK_CHECK_H
 
+#include <span>
+
 #include "check/device_limits.h"
+#include "check/pipeline_graph.h"
 #include "check/suppression.h"
 #include "program/compile.h"
 #include "program/scene_facts.h"
@@ -16,6 +19,7 @@ class Module;
 namespace quintet::check {
 
 struct StageContext;
+struct ProgramStageContext;
 
 struct CheckResult {
   std::vector<Diagnostic> diagnostics;           // of the compiler, then of the rules by id
@@ -29,6 +33,7 @@ struct CheckResult {
   // Traces form a cycle, so the depth depends on values: runs count it (program::Instrumentation::recursion).
   bool cyclic = false;
   std::vector<std::string> reached;          // files of the reachable stages
+  std::vector<std::string> chain;            // of raw modules: stages along the longest chain of traces
   std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files
   double seconds = 0;                        // wall time, including compilation
   bool ok() const { return !hasErrors(diagnostics); }
@@ -50,8 +55,15 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
 CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
                                      const program::SceneFacts* scene, const DeviceLimits& limits);
 
-// Runs the rules within one stage.
+// Checks raw modules with the rules that hold for every pipeline (rules/rules.h). A stage that cannot be analyzed, or that
+// has a problem, is not reported here; the rules that need all stages are then left out. Locations without a line name the
+// module, and the text names the SPIR-V id.
+CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits);
+
+// Runs the rules within one stage that hold for every pipeline.
 std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context);
+// Runs those that depend on Quintet's library, its optimizer or its order of instances.
+std::vector<Diagnostic> checkProgramStage(const spirv::Module& module, const ProgramStageContext& context);
 
 }  // namespace quintet::check
 #endif

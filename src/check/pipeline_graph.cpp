@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
 #include "check/swapped_arguments.h"
@@ -26,24 +27,49 @@ std::string_view roleName(Role role) {
 
 }  // namespace
 
-PipelineGraph::PipelineGraph(const program::Program& given, const program::CompiledProgram& compiled)
-    : program(given), misses(program::missShaders(given)) {
-  stages.resize(compiled.stages.size());
+PipelineGraph::PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled)
+    : groups(groupsOf(program)), usesLibrary(true), hasParameters_(true) {
+  context_ = [&program](const std::string& file, const program::SceneFacts* scene, ParameterUse use) {
+    return valueContext(program, file, scene, use);
+  };
+  for (const program::CompiledProgram::Stage& stage : compiled.stages) stages.push_back({stage.file, stage.kind, {}});
+  readStages([&](std::size_t i) { return compiled.stages[i].spirv; }, std::vector<std::string>(stages.size()));
+}
+
+PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> modules)
+    : groups(std::move(given)), usesLibrary(false) {
+  context_ = [this](const std::string& file, const program::SceneFacts*, ParameterUse) {
+    return groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file)
+                                                          : spirv::ValueContext{};
+  };
+  std::vector<std::string> problems;
+  for (const ModuleStage& module : modules) {
+    stages.push_back({module.name, module.kind, {}});
+    problems.push_back(module.problem);
+  }
+  readStages([&](std::size_t i) { return modules[i].spirv; }, std::move(problems));
+}
+
+void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words,
+                               std::vector<std::string> errors) {
   defaults_.resize(stages.size());
-  std::vector<std::string> errors(stages.size());
   parallelFor(stages.size(), [&](std::size_t i) {
-    stages[i].file = compiled.stages[i].file;
-    stages[i].kind = compiled.stages[i].kind;
-    auto module = spirv::Module::read(compiled.stages[i].spirv, &errors[i]);
+    if (!errors[i].empty()) return;
+    auto module = spirv::Module::read(words(i), &errors[i]);
     if (!module) return;
-    for (const auto& [file, text] : program.files) module->addSource(program.path(file), text);
-    stages[i].facts =
-        std::make_unique<spirv::StageFacts>(std::move(*module), valueContext(given, stages[i].file, nullptr));
+    for (const auto& [file, text] : groups.files) module->addSource(groups.path(file), text);
+    if (!usesLibrary) module->locateByIds(stages[i].file);
+    stages[i].facts = std::make_unique<spirv::StageFacts>(std::move(*module), context(stages[i].file, nullptr));
   });
   for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (!stages[i].facts) stages[i].problem = errors[i];
     if (!stages[i].facts && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);
     if (stages[i].facts) addTraces(i), addCalls(i);
   }
+}
+
+spirv::ValueContext PipelineGraph::context(const std::string& file, const program::SceneFacts* scene) const {
+  return context_(file, scene, ParameterUse::any);
 }
 
 const PipelineStage* PipelineGraph::stage(const std::string& file) const {
@@ -53,19 +79,21 @@ const PipelineStage* PipelineGraph::stage(const std::string& file) const {
 
 const program::HitShaders& PipelineGraph::shaders(HitGroupRay hit) const {
   static const program::HitShaders kNoShaders;
-  const auto& all = program.hitGroups[hit.group].shaders;
-  const auto found = all.find(program.rays[hit.ray].name);
+  const auto& all = groups.hitGroups[hit.group].shaders;
+  const auto found = all.find(groups.rays[hit.ray]);
   return found == all.end() ? kNoShaders : found->second;
 }
 
 bool PipelineGraph::hasIntersection(std::size_t group) const {
-  return program::hasIntersection(program.hitGroups[group]);
+  return program::hasIntersection(groups.hitGroups[group]);
 }
 
-const DefaultRanges& PipelineGraph::defaults(std::size_t stage) const {
+const DefaultRanges* PipelineGraph::defaults(std::size_t stage) const {
+  if (!hasParameters_) return nullptr;
   if (!defaults_[stage])
-    defaults_[stage] = std::make_unique<DefaultRanges>(program, stages[stage].file, stages[stage].facts->module());
-  return *defaults_[stage];
+    defaults_[stage] = std::make_unique<DefaultRanges>(context_(stages[stage].file, nullptr, ParameterUse::defaults),
+                                                       stages[stage].facts->module());
+  return defaults_[stage].get();
 }
 
 std::vector<std::size_t> PipelineGraph::rayTypes(const spirv::TraceFacts& trace) const {
@@ -90,50 +118,90 @@ void PipelineGraph::addTraces(std::size_t stage) {
       site.swapped = std::move(swapped.texts);
       site.trace = &intended_.emplace_back(std::move(swapped.intended));
     }
-    for (std::size_t i = 0; i < misses.size(); ++i) {
-      const bool reached = !trace.miss.known ||
-                           std::ranges::any_of(trace.miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
-      if (reached) addEdge(site.edges, misses[i].file, {0, Role::miss, trace.miss.certain(), {}, i});
-    }
+    addMisses(site);
     addHits(site);
     traces.push_back(std::move(site));
   }
 }
 
-void PipelineGraph::addHits(TraceSite& site) {
-  const spirv::TraceFacts& trace = *site.trace;
-  for (std::size_t group = 0; group < program.hitGroups.size(); ++group) {
-    if (trace.flags.mustHave(hasIntersection(group) ? kFlagSkipAabbs : kFlagSkipTriangles)) continue;
-    for (const std::size_t ray : rayTypes(trace)) {
-      const HitGroupRay hit{group, ray};
-      site.hits.push_back(hit);
-      const bool exact = trace.offset.certain();
-      const program::HitShaders& files = shaders(hit);
-      if (!site.skipsClosestHit()) addEdge(site.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
-      if (!trace.flags.mustHave(kFlagOpaque)) addEdge(site.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
-      addEdge(site.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
-    }
+void PipelineGraph::addMisses(TraceSite& site) {
+  const spirv::ArgumentValues& miss = site.trace->miss;
+  const std::vector<program::MissShader>& misses = groups.misses;
+  site.assumesMisses = !groups.tablesKnown && misses.size() > 1;
+  const bool only = !groups.tablesKnown && misses.size() == 1;
+  for (std::size_t i = 0; i < misses.size(); ++i) {
+    const bool reached = !groups.tablesKnown || !miss.known ||
+                         std::ranges::any_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
+    if (reached)
+      addEdge(site.edges, misses[i].file, {0, Role::miss, only || (groups.tablesKnown && miss.certain()), {}, i});
   }
 }
 
+void PipelineGraph::addHits(TraceSite& site) {
+  if (groups.hitRecords == HitRecords::byRecord) return addHitsByRecord(site);
+  for (std::size_t group = 0; group < groups.hitGroups.size(); ++group)
+    for (const std::size_t ray : rayTypes(*site.trace)) addHit(site, {group, ray}, site.trace->offset.certain());
+}
+
+void PipelineGraph::addHit(TraceSite& site, HitGroupRay hit, bool exact) {
+  const spirv::TraceFacts& trace = *site.trace;
+  if (groups.groupsKnown && trace.flags.mustHave(hasIntersection(hit.group) ? kFlagSkipAabbs : kFlagSkipTriangles))
+    return;
+  site.hits.push_back(hit);
+  const program::HitShaders& files = shaders(hit);
+  if (!site.skipsClosestHit()) addEdge(site.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
+  if (!trace.flags.mustHave(kFlagOpaque)) addEdge(site.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
+  addEdge(site.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
+}
+
+// With instances and constant arguments, the records are known; otherwise any group can be hit.
+void PipelineGraph::addHitsByRecord(TraceSite& site) {
+  const spirv::TraceFacts& trace = *site.trace;
+  const std::set<std::size_t> records = recordsOf(trace);
+  const bool known = groups.tablesKnown && groups.instances && trace.offset.known && trace.stride.known;
+  for (std::size_t group = 0; group < groups.hitGroups.size(); ++group)
+    if (!known || records.contains(group)) addHit(site, {group, 0}, known ? trace.offset.certain() : true);
+  site.assumesHits = !known && site.hits.size() > 1;
+  if (!site.assumesHits) return;
+  for (Edge& edge : site.edges)
+    if (edge.role != Role::miss) edge.exact = false;
+}
+
+std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) const {
+  std::set<std::size_t> records;
+  if (!groups.instances) return records;
+  for (const InstanceRecords& instance : *groups.instances) {
+    if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
+    for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k)
+      for (const std::uint32_t offset : trace.offset.values)
+        for (const std::uint32_t stride : trace.stride.values)
+          records.insert(std::size_t{instance.recordOffset} + std::size_t{k} * (stride & 0xFu) + (offset & 0xFu));
+  }
+  return records;
+}
+
 void PipelineGraph::addCalls(std::size_t stage) {
+  const std::vector<program::Callable>& callables = groups.callables;
   for (const spirv::CallFacts& call : stages[stage].facts->calls()) {
     CallSite site{stage, &call, {}};
-    for (std::size_t i = 0; i < program.callables.size(); ++i) {
-      const bool reached = !call.index.known || std::ranges::find(call.index.values, i) != call.index.values.end();
-      if (reached) addEdge(site.edges, program.callables[i].file, {0, Role::callable, call.index.certain(), {}, i});
+    const bool only = !groups.tablesKnown && callables.size() == 1;
+    for (std::size_t i = 0; i < callables.size(); ++i) {
+      const bool reached = !groups.tablesKnown || !call.index.known ||
+                           std::ranges::find(call.index.values, i) != call.index.values.end();
+      const bool exact = only || (groups.tablesKnown && call.index.certain());
+      if (reached) addEdge(site.edges, callables[i].file, {0, Role::callable, exact, {}, i});
     }
     calls.push_back(std::move(site));
   }
 }
 
 std::string PipelineGraph::describe(HitGroupRay hit) const {
-  const std::string group = fmt::format("hit group '{}'", program.hitGroups[hit.group].name);
-  return rayCount() > 1 ? fmt::format("{}, ray type '{}'", group, program.rays[hit.ray].name) : group;
+  const std::string group = fmt::format("hit group '{}'", groups.hitGroups[hit.group].name);
+  return rayCount() > 1 ? fmt::format("{}, ray type '{}'", group, groups.rays[hit.ray]) : group;
 }
 
 const std::string& PipelineGraph::nameOf(const std::string& file) const {
-  return file.starts_with(program.descriptionFile + ".") ? program.descriptionFile : file;
+  return usesLibrary && file.starts_with(groups.descriptionFile + ".") ? groups.descriptionFile : file;
 }
 
 bool PipelineGraph::areVariants(const PipelineStage& a, const PipelineStage& b) const {
@@ -150,25 +218,31 @@ std::string PipelineGraph::describe(const Edge& edge) const {
   return fmt::format("{} shader '{}' ({})", roleName(edge.role), file, describe(edge.hit));
 }
 
+bool PipelineGraph::isOwnFile(const std::string& file) const {
+  return !usesLibrary ||
+         std::ranges::any_of(groups.files, [&](const auto& entry) { return groups.path(entry.first) == file; });
+}
+
 SourceLocation PipelineGraph::descriptionLocation(int line) const {
-  return {program.path(program.descriptionFile), line, 0};
+  return {groups.path(groups.descriptionFile), line, 0};
 }
 
 SourceLocation PipelineGraph::location(const PipelineStage& stage, const SourceLocation& location) const {
-  return location.line > 0 ? location : SourceLocation{program.path(nameOf(stage.file)), 0, 0};
+  const bool known = location.line > 0 || spirv::isIdLocation(location);
+  return known ? location : SourceLocation{groups.path(nameOf(stage.file)), 0, 0};
 }
 
 SourceLocation PipelineGraph::declarationOf(const PipelineStage& stage, const spirv::SharedVariable& variable) const {
   const SourceLocation declared = location(stage, variable.declaration);
-  const auto source = program.files.find(program.descriptionFile);
-  if (nameOf(stage.file) == stage.file || source == program.files.end()) return declared;
+  const auto source = groups.files.find(groups.descriptionFile);
+  if (nameOf(stage.file) == stage.file || source == groups.files.end()) return declared;
   // The text of a stage of the lecture form has declarations that the user's file does not have.
   const std::string_view line = spirv::lineOf(source->second, declared.line);
   if (declared.column > 0 && static_cast<std::size_t>(declared.column) <= line.size() &&
       line.substr(static_cast<std::size_t>(declared.column) - 1).starts_with(variable.name))
     return declared;
-  const auto start = spirv::findWord(program.files.at(stage.file), "main");
-  return {program.path(program.descriptionFile), start ? start->line : 0, start ? start->column : 0};
+  const auto start = spirv::findWord(groups.files.at(stage.file), "main");
+  return {groups.path(groups.descriptionFile), start ? start->line : 0, start ? start->column : 0};
 }
 
 SourceLocation PipelineGraph::location(const TraceSite& site) const {

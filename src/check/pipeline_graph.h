@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pipeline as a graph: the facts of each stage, its traces and callable calls, and the stages that these can
-// reach over the program's shader binding table. Constant arguments select exactly; for other arguments all values
-// within the table are assumed. The graph is independent of a scene: a hit group is reachable if some geometry can be
-// bound to it.
+// reach over the shader binding table. Constant arguments select exactly; for other arguments all values within the table
+// are assumed. A graph is built from a program, or from raw SPIR-V modules. It has no description of a program: a rule
+// that depends on Quintet's layout or library takes one as input (rules/rules.h).
 #ifndef QUINTET_CHECK_PIPELINE_GRAPH_H
 #define QUINTET_CHECK_PIPELINE_GRAPH_H
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <set>
+#include <span>
 
+#include "check/pipeline_groups.h"
 #include "check/value_context.h"
 #include "program/compile.h"
 #include "program/hit_group_binding.h"
@@ -22,13 +25,22 @@ constexpr std::uint32_t kFlagOpaque = 1, kFlagNoOpaque = 2, kFlagTerminateOnFirs
                         kFlagCullBack = 16, kFlagCullFront = 32, kFlagCullOpaque = 64, kFlagCullNoOpaque = 128,
                         kFlagSkipTriangles = 256, kFlagSkipAabbs = 512;
 
-struct PipelineStage {
-  std::string file;  // as in the program description
+// SPIR-V of one stage that did not come from a program.
+struct ModuleStage {
+  std::string name;  // as PipelineGroups names it
   shader::Stage kind = shader::Stage::rayGeneration;
-  std::unique_ptr<spirv::StageFacts> facts;  // null if the module cannot be analyzed
+  std::vector<std::uint32_t> spirv;  // one entry point, optimized (shader/optimizer.h)
+  std::string problem;               // why there is no SPIR-V; empty if there is
 };
 
-// A hit group for one ray type: indices in Program::hitGroups and Program::rays.
+struct PipelineStage {
+  std::string file;  // as in PipelineGroups
+  shader::Stage kind = shader::Stage::rayGeneration;
+  std::unique_ptr<spirv::StageFacts> facts;  // null if the module cannot be analyzed
+  std::string problem = {};                  // why not
+};
+
+// A hit group for one ray type: indices in PipelineGroups::hitGroups and PipelineGroups::rays.
 struct HitGroupRay {
   std::size_t group = 0;
   std::size_t ray = 0;
@@ -51,6 +63,8 @@ struct TraceSite {
   std::vector<Edge> edges;
   std::vector<HitGroupRay> hits;     // that a hit can use
   std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
+  // One of the hit groups or miss shaders runs, but it is unknown which one: the layout of the table is unknown.
+  bool assumesHits = false, assumesMisses = false;
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
 };
 
@@ -61,28 +75,35 @@ struct CallSite {
 };
 
 struct PipelineGraph {
-  // Reads the modules in parallel. Both arguments must outlive the graph.
+  // Reads the modules in parallel. `program` must outlive the graph.
   PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled);
+  // Of raw modules.
+  PipelineGraph(PipelineGroups groups, std::span<const ModuleStage> modules);
 
-  const program::Program& program;
+  const PipelineGroups groups;
+  const bool usesLibrary;  // the stages include <quintet/…>, so structures with its names are those of the library
   std::vector<PipelineStage> stages;
-  std::vector<program::MissShader> misses;
   std::vector<TraceSite> traces;
   std::vector<CallSite> calls;
   std::string error;  // first module that cannot be analyzed, and the reason; empty if all can
 
-  std::size_t rayCount() const { return program.rays.size(); }
+  std::size_t rayCount() const { return groups.rays.size(); }
   const PipelineStage* stage(const std::string& file) const;  // null if unknown
   const spirv::StageFacts& facts(const TraceSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const CallSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const Edge& edge) const { return *stages[edge.stage].facts; }
   const program::HitShaders& shaders(HitGroupRay hit) const;  // empty if the group has none for that ray type
   bool hasIntersection(std::size_t group) const;
-  // Ranges of a stage, which has facts, if all parameters have their defaults. Cached; threads must ask for different
-  // stages.
-  const DefaultRanges& defaults(std::size_t stage) const;
+  // What is known about the values of a stage. A null `scene` stands for any scene.
+  spirv::ValueContext context(const std::string& file, const program::SceneFacts* scene) const;
+  // Ranges of a stage, which has facts, if all parameters have their defaults; null without parameters. Cached; threads
+  // must ask for different stages.
+  const DefaultRanges* defaults(std::size_t stage) const;
   // Ray types whose hit shaders the trace can use.
   std::vector<std::size_t> rayTypes(const spirv::TraceFacts& trace) const;
+  // With HitRecords::byRecord: indices of the hit records that the known instances and values of the arguments select,
+  // which can be beyond the table.
+  std::set<std::size_t> recordsOf(const spirv::TraceFacts& trace) const;
   // Stages reachable from ray generation. An any-hit shader counts as reachable even if opacity prevents it.
   std::set<std::size_t> reachableStages() const;
 
@@ -93,7 +114,9 @@ struct PipelineGraph {
   // "closest-hit shader 'a.rchit' (hit group 'surface', ray type 'primary')"
   std::string describe(const Edge& edge) const;
   std::string describe(HitGroupRay hit) const;  // "hit group 'surface', ray type 'primary'"
-  // A line of the program description.
+  // True if the file is one of the user's: not of the shader library.
+  bool isOwnFile(const std::string& file) const;
+  // A line of the description of the groups.
   SourceLocation descriptionLocation(int line) const;
   // The given location if its line is known, else the file of the stage.
   SourceLocation location(const PipelineStage& stage, const SourceLocation& location) const;
@@ -103,12 +126,21 @@ struct PipelineGraph {
   SourceLocation location(const CallSite& site) const;
 
  private:
-  std::deque<spirv::TraceFacts> intended_;                        // of traces with swapped arguments
+  using Context = std::function<spirv::ValueContext(const std::string&, const program::SceneFacts*, ParameterUse)>;
+
+  std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
+  Context context_;
+  bool hasParameters_ = false;
   mutable std::vector<std::unique_ptr<DefaultRanges>> defaults_;  // by stage
 
+  // Reads module i, which `words` returns, if it is not empty.
+  void readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words, std::vector<std::string> errors);
   void addTraces(std::size_t stage);
   void addCalls(std::size_t stage);
+  void addMisses(TraceSite& site);
   void addHits(TraceSite& site);
+  void addHit(TraceSite& site, HitGroupRay hit, bool exact);
+  void addHitsByRecord(TraceSite& site);
   void addEdge(std::vector<Edge>& edges, const std::string& file, Edge edge) const;
 };
 

@@ -135,6 +135,10 @@ Suppressions::Suppressions(const program::Program& program) {
   }
 }
 
+Suppressions::Suppressions(const std::map<std::string, std::string>& texts) {
+  for (const auto& [file, text] : texts) add(file, text);
+}
+
 void Suppressions::add(const std::string& file, std::string_view text) {
   std::vector<Known>& list = files_[file];
   for (Suppression& suppression : findSuppressions(file, text)) {

@@ -34,6 +34,7 @@ struct SuppressedDiagnostic {
 class Suppressions {
  public:
   explicit Suppressions(const program::Program& program);
+  explicit Suppressions(const std::map<std::string, std::string>& texts);  // by file, as diagnostics name it
 
   // Moves the accepted diagnostics from the list to the result.
   std::vector<SuppressedDiagnostic> apply(std::vector<Diagnostic>& diagnostics);

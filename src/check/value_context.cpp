@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "check/library_names.h"
 #include "program/hit_group_binding.h"
@@ -93,19 +94,26 @@ void addRecords(const program::Program& program, const std::string& file, spirv:
   }
 }
 
-// Built-ins of the hits for which a stage of a hit group runs.
-void addHits(const program::Program& program, const std::string& file, const program::SceneFacts* scene,
-             spirv::ValueContext& context) {
+// The hit groups that use a stage. Limits the kinds and attributes of its hits.
+std::set<std::size_t> addHitGroups(const std::vector<program::HitGroup>& hitGroups, const std::string& file,
+                                   spirv::ValueContext& context) {
   std::set<std::size_t> groups;
-  for (std::size_t i = 0; i < program.hitGroups.size(); ++i)
-    for (const auto& [ray, shaders] : program.hitGroups[i].shaders)
+  for (std::size_t i = 0; i < hitGroups.size(); ++i)
+    for (const auto& [ray, shaders] : hitGroups[i].shaders)
       if (uses(shaders, file)) groups.insert(i);
-  if (groups.empty()) return;
-  const auto procedural = [&](std::size_t group) { return program::hasIntersection(program.hitGroups[group]); };
+  if (groups.empty()) return groups;
+  const auto procedural = [&](std::size_t group) { return program::hasIntersection(hitGroups[group]); };
   if (std::ranges::all_of(groups, procedural))
     context.builtIns[spv::BuiltIn::HitKindKHR] = ValueRange::between(0.0, 255.0);
   if (std::ranges::none_of(groups, procedural)) context.hitAttribute = ValueRange::between(0.0, 1.0);  // barycentrics
-  if (!scene) return;
+  return groups;
+}
+
+// Built-ins of the hits for which a stage of a hit group runs.
+void addHits(const program::Program& program, const std::string& file, const program::SceneFacts* scene,
+             spirv::ValueContext& context) {
+  const std::set<std::size_t> groups = addHitGroups(program.hitGroups, file, context);
+  if (groups.empty() || !scene) return;
   std::set<double> instances, geometries, all;
   for (std::size_t i = 0; i < scene->instances.size(); ++i) {
     const program::InstanceFacts& instance = scene->instances[i];
@@ -148,8 +156,14 @@ spirv::ValueContext valueContext(const program::Program& program, const std::str
   return context;
 }
 
-DefaultRanges::DefaultRanges(const program::Program& program, const std::string& file, const spirv::Module& module)
-    : module_(module), ranges_(module, valueContext(program, file, nullptr, ParameterUse::defaults)) {}
+spirv::ValueContext groupContext(const std::vector<program::HitGroup>& hitGroups, const std::string& file) {
+  spirv::ValueContext context;
+  addHitGroups(hitGroups, file, context);
+  return context;
+}
+
+DefaultRanges::DefaultRanges(spirv::ValueContext context, const spirv::Module& module)
+    : module_(module), ranges_(module, std::move(context)) {}
 
 std::string DefaultRanges::parameters(std::initializer_list<spirv::Id> values) const {
   std::set<std::string> found;

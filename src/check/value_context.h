@@ -6,6 +6,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "program/description/program.h"
 #include "program/scene_facts.h"
@@ -22,11 +23,14 @@ enum class ParameterUse {
 spirv::ValueContext valueContext(const program::Program& program, const std::string& file,
                                  const program::SceneFacts* scene, ParameterUse parameters = ParameterUse::any);
 
+// What the hit groups that use a stage say about its values: hit kinds, barycentrics.
+spirv::ValueContext groupContext(const std::vector<program::HitGroup>& hitGroups, const std::string& file);
+
 // Ranges in a stage if all parameters have their defaults.
 class DefaultRanges {
  public:
   // `module` must outlive this object.
-  DefaultRanges(const program::Program& program, const std::string& file, const spirv::Module& module);
+  DefaultRanges(spirv::ValueContext context, const spirv::Module& module);
 
   spirv::ValueRange at(std::size_t instruction, spirv::Id value, const spirv::Path& path = {}) const {
     return ranges_.rangeAt(instruction, value, path);

@@ -58,9 +58,12 @@ std::vector<check::SuppressedDiagnostic> CheckReport::suppressed() const {
 
 check::SourceLookup CheckReport::sources() const {
   return [this](const std::string& file) {
-    for (const ProgramReport& report : programs)
+    for (const ProgramReport& report : programs) {
+      if (const auto found = report.sources.find(file); found != report.sources.end())
+        return std::optional(found->second);
       if (report.program)
         if (auto text = check::sourcesOf(*report.program)(file)) return text;
+    }
     return check::sourcesOnDisk()(file);
   };
 }

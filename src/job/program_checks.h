@@ -5,6 +5,7 @@
 #define QUINTET_JOB_PROGRAM_CHECKS_H
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,8 +36,9 @@ struct ProgramReport {
   std::optional<program::Program> program;   // none if its description could not be read
   std::optional<program::SceneFacts> facts;  // none if any scene was assumed
   check::CheckResult result;
-  std::vector<std::filesystem::path> files;  // on disk, that the result depends on
-  bool wrongRequest = false;                 // the program is unknown, or a parameter is invalid
+  std::vector<std::filesystem::path> files;    // on disk, that the result depends on
+  std::map<std::string, std::string> sources;  // texts that SPIR-V modules contain, by file (module_checks.h)
+  bool wrongRequest = false;                   // the program is unknown, or a parameter is invalid
 };
 
 struct CheckReport {

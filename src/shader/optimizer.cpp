@@ -29,9 +29,14 @@ void registerReductions(spvtools::Optimizer& optimizer) {
       .RegisterPass(spvtools::CreateAggressiveDCEPass(false));
 }
 
-}  // namespace
+void registerSpecialization(spvtools::Optimizer& optimizer, const SpecializationValues& values) {
+  if (!values.empty()) optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values));
+  optimizer.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+      .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+}
 
-std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
+std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo,
+                               const std::optional<SpecializationValues>& values) {
   std::vector<std::uint32_t> result;
   std::string message;
   bool succeeded = false;
@@ -41,6 +46,7 @@ std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, boo
       if (level <= SPV_MSG_ERROR) message = text;
     });
     if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+    if (values) registerSpecialization(optimizer, *values);
     registerReductions(optimizer);
     optimizer.RegisterPerformancePasses();
     spvtools::ValidatorOptions validation;
@@ -52,6 +58,17 @@ std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, boo
   });
   if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));
   return result;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
+  return run(words, debugInfo, {});
+}
+
+std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
+                                               const std::optional<SpecializationValues>& values) {
+  return run(words, true, values);
 }
 
 }  // namespace quintet::shader

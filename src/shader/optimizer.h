@@ -4,6 +4,8 @@
 #define QUINTET_SHADER_OPTIMIZER_H
 
 #include <cstdint>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace quintet::shader {
@@ -14,6 +16,14 @@ inline constexpr std::uint64_t kOptimizerVersion = 1;
 // Validates `words`, reduces each function, and runs the performance passes of spirv-opt, which inline all functions.
 // Without `debugInfo`, removes sources, lines and names. Throws Error if the module is invalid or a pass fails.
 std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo = true);
+
+// Values of specialization constants by constant_id: the bits, one word for up to 32 bits, else two.
+using SpecializationValues = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
+
+// As `optimize`, for SPIR-V of unknown origin. With `values`, all specialization constants become constants: those that are
+// missing there have their defaults. Without, they stay unknown.
+std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
+                                               const std::optional<SpecializationValues>& values);
 
 }  // namespace quintet::shader
 #endif

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <spirv/unified1/NonSemanticShaderDebugInfo100.h>
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -16,6 +17,7 @@ constexpr int kMaxChain = 64;      // nested access chains
 constexpr int kMaxCallLines = 16;  // lines of a call that location() searches
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kMaxWords = std::size_t{1} << 26;
+constexpr std::string_view kDebugInfo = "NonSemantic.Shader.DebugInfo.100";
 
 // Decodes a literal string: the bytes from operand word `from` up to a NUL. `next` becomes the word after it.
 std::string literalString(std::span<const std::uint32_t> operands, std::size_t from, std::size_t* next = nullptr) {
@@ -126,6 +128,9 @@ class ModuleReader {
   bool readInstructions();
   bool add(Instruction instruction, std::size_t where);
   void readDebug(const Instruction& instruction);
+  bool isDebugInfo(const Instruction& instruction) const;
+  void readDebugInfo(const Instruction& instruction);
+  SourceLocation debugLocation(Id source, Id line, Id column) const;
   void readSource(const Instruction& instruction);
   bool readType(const Instruction& instruction);
   void readVariable(const Instruction& instruction);
@@ -140,6 +145,8 @@ class ModuleReader {
   std::uint32_t line_ = 0, column_ = 0;  // of the current OpLine
   std::string* openSource_ = nullptr;    // OpSourceContinued appends to it
   std::vector<std::pair<Id, std::pair<std::uint32_t, std::string>>> memberNames_;
+  std::map<Id, Id> debugSources_;  // DebugSource: OpString of the file
+  std::map<Id, SourceLocation> debugFunctions_;
 };
 
 bool ModuleReader::fail(std::string text) {
@@ -201,6 +208,10 @@ bool ModuleReader::add(Instruction instruction, std::size_t where) {
     file_ = line_ = column_ = 0;
     return true;
   }
+  if (isDebugInfo(instruction)) {
+    readDebugInfo(instruction);
+    return true;
+  }
   instruction.file = file_, instruction.line = line_, instruction.column = column_;
   if (instruction.result != 0) {
     if (m_.definitions_[instruction.result] != Module::kNone)
@@ -232,10 +243,61 @@ void ModuleReader::readDebug(const Instruction& instruction) {
     case Op::OpExtInstImport: m_.extendedSets_[instruction.result] = literalString(operands, 0); break;
     case Op::OpDecorate: m_.decorations_[{instruction.at(0), instruction.at(1)}] = instruction.at(2); break;
     case Op::OpEntryPoint:
+      m_.entryPoints_.push_back({static_cast<spv::ExecutionModel>(instruction.at(0)), literalString(operands, 2)});
       if (m_.entry_ == 0)
         m_.stage_ = static_cast<spv::ExecutionModel>(instruction.at(0)), m_.entry_ = instruction.at(1);
       break;
     default: break;
+  }
+}
+
+bool ModuleReader::isDebugInfo(const Instruction& instruction) const {
+  return instruction.op == spv::Op::OpExtInst && m_.extendedSet(instruction.at(0)) == kDebugInfo;
+}
+
+// Lines and columns are constants.
+SourceLocation ModuleReader::debugLocation(Id source, Id line, Id column) const {
+  const auto file = debugSources_.find(source);
+  const auto name = file == debugSources_.end() ? m_.strings_.end() : m_.strings_.find(file->second);
+  if (name == m_.strings_.end()) return {};
+  const auto number = [&](Id id) { return static_cast<int>(m_.constantBits(id).value_or(0) & 0x7FFFFFFFu); };
+  return {name->second, number(line), number(column)};
+}
+
+// The instructions of NonSemantic.Shader.DebugInfo.100 that say where something is. The others describe types and scopes.
+void ModuleReader::readDebugInfo(const Instruction& instruction) {
+  const auto at = [&](std::size_t i) { return instruction.at(i + 2); };  // after the set and the number
+  switch (instruction.at(1)) {
+    case NonSemanticShaderDebugInfo100DebugSource: {
+      debugSources_[instruction.result] = at(0);
+      const std::string *file = m_.string(at(0)), *text = m_.string(at(1));
+      openSource_ = nullptr;
+      if (!file || !text) return;
+      openSource_ = &m_.sources_[*file];
+      *openSource_ = *text;
+      return;
+    }
+    case NonSemanticShaderDebugInfo100DebugSourceContinued:
+      if (const std::string* text = m_.string(at(0)); text && openSource_) *openSource_ += *text;
+      return;
+    case NonSemanticShaderDebugInfo100DebugLine: {
+      const auto file = debugSources_.find(at(0));
+      file_ = file == debugSources_.end() ? 0 : file->second;
+      line_ = m_.constantBits(at(1)).value_or(0), column_ = m_.constantBits(at(3)).value_or(0);
+      return;
+    }
+    case NonSemanticShaderDebugInfo100DebugNoLine: file_ = line_ = column_ = 0; return;
+    case NonSemanticShaderDebugInfo100DebugGlobalVariable:
+      m_.declarations_[at(7)] = debugLocation(at(2), at(3), at(4));
+      return;
+    case NonSemanticShaderDebugInfo100DebugFunction:
+      debugFunctions_[instruction.result] = debugLocation(at(2), at(3), at(4));
+      return;
+    case NonSemanticShaderDebugInfo100DebugFunctionDefinition:
+      if (const auto found = debugFunctions_.find(at(0)); found != debugFunctions_.end())
+        m_.declarations_[at(1)] = found->second;
+      return;
+    default: return;
   }
 }
 
@@ -438,6 +500,43 @@ std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words
   return result;
 }
 
+std::vector<std::uint32_t> withEntryPoint(std::span<const std::uint32_t> words, const EntryPoint& entryPoint) {
+  using spv::Op;
+  const std::size_t head = std::min(words.size(), kHeaderWords);
+  std::vector<std::uint32_t> result(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(head));
+  std::vector<Id> removed;  // functions of the other entry points
+  std::optional<Id> kept;
+  for (std::size_t at = kHeaderWords; at < words.size();) {
+    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
+    const std::span<const std::uint32_t> operands = words.subspan(at + 1, count - 1);
+    const auto op = static_cast<Op>(words[at] & 0xFFFFu);
+    bool keep = true;
+    if (op == Op::OpEntryPoint && operands.size() > 2) {
+      keep = !kept && operands[0] == static_cast<std::uint32_t>(entryPoint.stage) &&
+             literalString(operands, 2) == entryPoint.name;
+      if (keep)
+        kept = operands[1];
+      else
+        removed.push_back(operands[1]);
+    } else if ((op == Op::OpExecutionMode || op == Op::OpExecutionModeId) && !operands.empty()) {
+      keep = kept == operands[0] || std::ranges::find(removed, operands[0]) == removed.end();
+    }
+    if (keep)
+      result.insert(result.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
+                    words.begin() + static_cast<std::ptrdiff_t>(at + count));
+    at += count;
+  }
+  return result;
+}
+
+bool isIdLocation(const SourceLocation& location) { return location.file.find(kIdMark) != std::string::npos; }
+
+std::pair<std::string, std::string> splitIdLocation(const std::string& file) {
+  const std::size_t mark = file.find(kIdMark);
+  if (mark == file.npos) return {file, {}};
+  return {file.substr(0, mark), file.substr(mark + 1)};
+}
+
 std::optional<Module> Module::read(std::vector<std::uint32_t> words, std::string* why) {
   Module module;
   module.words_ = std::move(words);
@@ -572,7 +671,7 @@ Access Module::access(Id pointer) const {
 
 SourceLocation Module::location(const Instruction& instruction, std::string_view token) const {
   const auto file = strings_.find(instruction.file);
-  if (file == strings_.end()) return {};
+  if (file == strings_.end() || instruction.line == 0) return idLocation(instruction);
   SourceLocation result{file->second, static_cast<int>(instruction.line & 0x7FFFFFFFu),
                         static_cast<int>(instruction.column & 0x7FFFFFFFu)};
   // glslang names the line where a call ends: a call over several lines starts some lines earlier.
@@ -581,6 +680,47 @@ SourceLocation Module::location(const Instruction& instruction, std::string_view
     if (at != token.npos) result.line -= back, result.column = static_cast<int>(at) + 1;
   }
   return result;
+}
+
+SourceLocation Module::declaration(Id id) const {
+  if (const auto found = declarations_.find(id); found != declarations_.end() && found->second.line > 0)
+    return found->second;
+  return idLocation(id);
+}
+
+SourceLocation Module::idLocation(Id id) const {
+  if (file_.empty()) return {};
+  const std::string named = name(id);
+  return {file_ + kIdMark + fmt::format("SPIR-V id %{}{}", id, named.empty() ? "" : " '" + named + "'"), 0, 0};
+}
+
+// An instruction without a result is named by the pointer that it uses. Traces can share it, so they are counted.
+SourceLocation Module::idLocation(const Instruction& instruction) const {
+  using spv::Op;
+  if (file_.empty()) return {};
+  const auto pointer = [&](std::size_t operand) {
+    const Id variable = access(instruction.at(operand)).variable;
+    return variable != 0 ? variable : instruction.at(operand);
+  };
+  switch (instruction.op) {
+    case Op::OpTraceRayKHR:
+    case Op::OpExecuteCallableKHR: {
+      const bool trace = instruction.op == Op::OpTraceRayKHR;
+      std::size_t number = 0;
+      for (const Instruction& other : instructions_) {
+        number += other.op == instruction.op ? 1 : 0;
+        if (&other == &instruction) break;
+      }
+      SourceLocation result = idLocation(pointer(trace ? 10 : 1));
+      result.file += fmt::format(", {} {}", trace ? "OpTraceRayKHR number" : "OpExecuteCallableKHR number", number);
+      return result;
+    }
+    case Op::OpStore: return idLocation(pointer(0));
+    case Op::OpLoad: return idLocation(pointer(0));
+    case Op::OpIgnoreIntersectionKHR:
+    case Op::OpTerminateRayKHR: return idLocation(entry_);
+    default: return idLocation(instruction.result != 0 ? instruction.result : entry_);
+  }
 }
 
 std::string_view Module::source(const std::string& file) const {

@@ -69,6 +69,19 @@ struct Access {
   std::vector<Id> indexIds;
 };
 
+// An entry point of a module. Libraries of HLSL and Slang have several.
+struct EntryPoint {
+  spv::ExecutionModel stage = spv::ExecutionModel::Max;
+  std::string name;
+};
+
+// Separates the file and the id in SourceLocation::file.
+inline constexpr char kIdMark = '\x1f';
+// True if Module::location() names an instruction without a known line by its SPIR-V id.
+bool isIdLocation(const SourceLocation& location);
+// Returns the name of the module and "SPIR-V id %57 'payload'"; the file of any other location and an empty text.
+std::pair<std::string, std::string> splitIdLocation(const std::string& file);
+
 bool isAccessChain(spv::Op op);  // OpAccessChain, OpPtrAccessChain and their InBounds forms
 
 class Module {
@@ -79,7 +92,8 @@ class Module {
   Module& operator=(Module&&) noexcept = default;
 
   std::optional<spv::ExecutionModel> stage() const { return stage_; }  // of the first entry point
-  const Function* entry() const;                                       // null if the module has no entry point
+  const std::vector<EntryPoint>& entryPoints() const { return entryPoints_; }
+  const Function* entry() const;  // null if the module has no entry point
   const std::vector<Instruction>& instructions() const { return instructions_; }
   const std::vector<Function>& functions() const { return functions_; }
   const Function* function(Id id) const;          // null if unknown
@@ -114,6 +128,11 @@ class Module {
   // Source location of an instruction. `token` is the text to look for in that line; it gives the column, which
   // glslang does not write. glslang names the line where a call ends, so the lines before it are searched as well.
   SourceLocation location(const Instruction& instruction, std::string_view token = {}) const;
+  // Where a variable at module scope or a function is declared, from OpLine or NonSemantic.Shader.DebugInfo.100.
+  SourceLocation declaration(Id id) const;
+  // From now on, location() and declaration() name what has no known line by `file` and its SPIR-V id. For modules whose
+  // source is unknown.
+  void locateByIds(const std::string& file) { file_ = file; }
   // Text of a source file as the compiler got it; empty if unknown.
   std::string_view source(const std::string& file) const;
   const std::map<std::string, std::string>& sources() const { return sources_; }
@@ -141,6 +160,12 @@ class Module {
   std::vector<Variable> variables_;
   std::map<std::string, std::string> sources_;       // from the module itself
   std::map<std::string, std::string> addedSources_;  // from addSource()
+  std::vector<EntryPoint> entryPoints_;
+  std::map<Id, SourceLocation> declarations_;
+  std::string file_;  // of locateByIds(); empty if it was not called
+
+  SourceLocation idLocation(Id id) const;
+  SourceLocation idLocation(const Instruction& instruction) const;
 };
 
 // Returns the GLSL name of a ray tracing built-in: "gl_PrimitiveID", "gl_RayTmaxEXT" (also for gl_HitTEXT).
@@ -153,6 +178,10 @@ std::vector<Id> valueOperands(const Instruction& instruction);
 // Returns a copy without sources, lines, names and non-semantic instructions (debugPrintfEXT): the module that the driver
 // gets.
 std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words);
+
+// Returns a copy with one of the entry points. What only the others use stays, unreachable. Words that cannot be read as
+// instructions are copied.
+std::vector<std::uint32_t> withEntryPoint(std::span<const std::uint32_t> words, const EntryPoint& entryPoint);
 
 }  // namespace quintet::spirv
 #endif

@@ -36,8 +36,9 @@ SharedVariable sharedVariable(const Module& module, const Variable& variable) {
     if (!found) continue;
     result.declaration = {found->file.empty() ? file : found->file, found->line, found->column};
     result.location = found->location;
-    break;
+    return result;
   }
+  result.declaration = module.declaration(variable.id);
   return result;
 }
 
@@ -320,6 +321,12 @@ ValuePart StageFacts::storedValue(const AccessFacts& write, std::uint32_t leaf) 
   const std::size_t depth = module_.access(store.at(0)).indices.size();
   if (depth > path.size()) return {store.at(1), {}};
   return originOf(module_, {store.at(1), {path.begin() + static_cast<std::ptrdiff_t>(depth), path.end()}});
+}
+
+bool StageFacts::hasUnknownConstants() const {
+  return std::ranges::any_of(module_.instructions(), [](const Instruction& i) {
+    return i.op == Op::OpSpecConstant || i.op == Op::OpSpecConstantTrue || i.op == Op::OpSpecConstantFalse;
+  });
 }
 
 const SharedVariable* StageFacts::incoming(spv::StorageClass storage) const {

@@ -112,6 +112,7 @@ class StageFacts {
   const std::vector<BuiltInRead>& builtIns() const { return builtIns_; }
   const std::vector<SharedVariable>& variables() const { return variables_; }
   bool ignores() const { return ignores_; }  // has ignoreIntersectionEXT
+  bool hasUnknownConstants() const;          // has specialization constants without a value
 
   // The used variable of a storage class that a stage has at most once (incoming payload, hit attribute, incoming
   // callable data); null if the stage uses none.

@@ -385,5 +385,23 @@ TEST_F(Check, CompilesTheCodeOfOptionalOutputs) {
   EXPECT_THAT(result.err, HasSubstr("(with optional output 'extra')"));
 }
 
+// SPIR-V of other applications.
+TEST_F(Check, ReadsSpirvModulesAndTheirGroups) {
+  expectError(quintet({"check", "x", "--groups", "groups.json"}), 2, {"--groups requires --spirv"});
+  expectError(quintet({"check", "--spirv"}), 2, {"no SPIR-V file given"});
+  expectError(quintet({"check", "--spirv", "x", "--instrument"}), 2, {"exclude each other"});
+  RunResult result = quintet({"check", "--spirv", "missing.spv"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("missing.spv: error:"));
+  write(folder_ / "text.spv", "#version 460\n");
+  result = quintet({"check", "--spirv", "text.spv"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("text.spv: error: byte 0: this is not a SPIR-V module [FILE]"));
+  write(folder_ / "groups.json", "{\"ray_generation\": 3}");
+  result = quintet({"check", "--spirv", "text.spv", "--groups", "groups.json", "--json"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.out, HasSubstr("/ray_generation: must be a string, but is a number"));
+}
+
 }  // namespace
 }  // namespace quintet::test

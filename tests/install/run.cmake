@@ -19,6 +19,13 @@ foreach(file IN ITEMS LICENSE README.md docs/README.md docs/cli.md docs/diagnost
     message(FATAL_ERROR "not installed: share/doc/quintet/${file}")
   endif()
 endforeach()
+# The manifest of the layer names the library relative to itself.
+file(GLOB manifest ${work}/prefix/share/vulkan/explicit_layer.d/VkLayer_quintet_link_check.json)
+file(READ "${manifest}" text)
+string(JSON library GET "${text}" layer library_path)
+if(NOT EXISTS ${work}/prefix/share/vulkan/explicit_layer.d/${library})
+  message(FATAL_ERROR "not installed: ${library}")
+endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples/cpp -B ${work}/build -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Debug)
 run(${CMAKE_COMMAND} --build ${work}/build)
 foreach(example IN ITEMS first_ray mesh_from_memory animated_instances own_program error_target explain_pixel)

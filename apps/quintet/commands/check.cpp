@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet check`: compiles programs and checks how their shaders fit together, on a scene; with --watch again after each
-// save. Requires a device only with --instrument.
+// save. Requires a device only with --instrument. With --spirv, checks SPIR-V of other applications.
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,6 +28,7 @@
 #include "cli/values.h"
 #include "cli/work.h"
 #include "job/live_check.h"
+#include "job/module_checks.h"
 #include "job/program_checks.h"
 #include "job/scene_source.h"
 #include "output/plan.h"
@@ -39,6 +40,8 @@ struct Options {
   job::CheckRequest request;
   std::string size, region, samples, timeout;  // of --instrument
   std::filesystem::path sarif, graph;
+  bool spirv = false;
+  std::filesystem::path groups;  // of --spirv
   std::string colorName = "auto";
   check::TextOptions text;
   bool showSuppressed = false;
@@ -55,10 +58,18 @@ OptionTable declare(Options& options) {
       {{.names = "PROGRAM",
         .help =
             "One or more programs, folders of programs, or built-in names; the last argument can be a scene: .gltf, "
-            ".glb or .scene.toml (default: each program's own)",
+            ".glb or .scene.toml (default: each program's own). With --spirv: SPIR-V files, or folders with them",
         .target = &options.request.programs,
         .candidates = programOrSceneCandidates(),
         .required = true},
+       {.names = "--spirv",
+        .help = "Check SPIR-V of any application: how the stages of its ray tracing pipelines fit together",
+        .target = &options.spirv},
+       {.names = "--groups",
+        .value = "FILE.json",
+        .help = "Shader groups of --spirv in the order of the shader binding table (see docs/layer.md)",
+        .target = &options.groups,
+        .candidates = {.extensions = {"json"}}},
        {.names = "--json", .help = "Print an array of diagnostics on standard output", .target = &options.json},
        {.names = "--sarif",
         .value = "FILE",
@@ -128,6 +139,8 @@ OptionTable declare(Options& options) {
       {"quintet check my_program/ --json", "for scripts: an array of diagnostics"},
       {"quintet check programs/ --sarif check.sarif", "for editors and CI"},
       {"quintet check programs/ --strict", "all programs; warnings count"},
+      {"quintet check --spirv shaders/", "SPIR-V of any application, one pipeline per folder"},
+      {"quintet check --spirv shaders/ --groups groups.json", "with its shader groups"},
       {"quintet check my_program/ --instrument", "also find NaN and wrong hit records"},
       {"quintet check my_program/ --instrument --size 1280x720 --region 600,300,64,64", "a part of a larger image"},
   });
@@ -173,6 +186,12 @@ std::optional<Options> parseOptions(Arguments arguments) {
     reject(!run.assignments.empty(), "--set");
     reject(!run.parameterFile.empty(), "--set-file");
   }
+  if (!options.spirv && !options.groups.empty()) throw UsageError("--groups requires --spirv");
+  if (options.spirv) {
+    if (request.instrument) throw UsageError("--spirv and --instrument exclude each other");
+    if (options.watch) throw UsageError("--spirv and --watch exclude each other");
+    if (!options.graph.empty()) throw UsageError("--spirv and --graph exclude each other");
+  }
   convertLoading(options.load, run.load);
   if (!options.size.empty()) run.size = parseSize("--size", options.size);
   if (!options.region.empty()) run.region = parseRegion("--region", options.region);
@@ -180,11 +199,12 @@ std::optional<Options> parseOptions(Arguments arguments) {
   run.launchTimeout =
       parseReal("--timeout", options.timeout, 0.001, std::numeric_limits<double>::infinity()).value_or(0.0);
   std::vector<std::string>& programs = request.programs;
-  if (!programs.empty() && job::isSceneFile(programs.back())) {
+  if (!options.spirv && !programs.empty() && job::isSceneFile(programs.back())) {
     request.scene = programs.back();
     programs.pop_back();
   }
-  if (programs.empty()) throw UsageError("no program given; see 'quintet check --help'");
+  if (programs.empty())
+    throw UsageError(fmt::format("no {} given; see 'quintet check --help'", options.spirv ? "SPIR-V file" : "program"));
   options.text.color = parseColor(options.colorName);
   options.text.width = terminalWidth(STDERR_FILENO);
   checkFiles(options);
@@ -212,13 +232,14 @@ void writeSarif(const job::CheckReport& report, const Options& options, bool com
 }
 
 // Writes the files that the options request. Returns the exit status.
-int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks, const Options& options) {
+// `checks` is null for SPIR-V.
+int writeReport(const job::CheckReport& report, const job::ProgramChecks* checks, const Options& options) {
   std::vector<Diagnostic> found = report.diagnostics();
   const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
   int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict()) ? 0 : kRuntimeError;
   try {
     if (!options.sarif.empty()) writeSarif(report, options, true);
-    if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));
+    if (!options.graph.empty()) writeGraph(options.graph, checks->pipelineOf(report.programs.front()));
   } catch (const FileError& error) {
     status = reportFailure(error, FailureJson::none);
     found.push_back(asDiagnostic(error));
@@ -233,7 +254,7 @@ int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks
 // Prints what the check of each program found.
 class Printer : public job::CheckObserver {
  public:
-  Printer(const job::ProgramChecks& checks, const Options& options) : checks_(checks), options_(options) {}
+  Printer(const job::ProgramChecks* checks, const Options& options) : checks_(checks), options_(options) {}
 
   void started(const std::string& name) override {
     setWorkProgram(name);
@@ -255,7 +276,7 @@ class Printer : public job::CheckObserver {
     if (options_.json)
       addWorkResult(check::diagnosticsJson(report.result.diagnostics, report.result.suppressed));
     else
-      print(report);
+      print(report, all);
     if (options_.sarif.empty() || output::isStandardOutput(options_.sarif)) return;
     try {
       writeSarif(all, options_, false);
@@ -265,11 +286,10 @@ class Printer : public job::CheckObserver {
 
  private:
   // Diagnostics and the line "NAME: 1 error, 2 warnings (1 suppressed)".
-  void print(const job::ProgramReport& report) const {
+  void print(const job::ProgramReport& report, const job::CheckReport& all) const {
     const check::CheckResult& result = report.result;
-    printError(check::diagnosticsText(result.diagnostics,
-                                      report.program ? check::sourcesOf(*report.program) : check::sourcesOnDisk(),
-                                      options_.text));
+    printError(check::diagnosticsText(
+        result.diagnostics, report.program ? check::sourcesOf(*report.program) : all.sources(), options_.text));
     if (options_.showSuppressed) printError(check::suppressedText(result.suppressed, options_.text));
     std::string count = countText(result.diagnostics);
     if (count.empty()) count = "clean";
@@ -277,7 +297,7 @@ class Printer : public job::CheckObserver {
     printError(fmt::format("{}: {}\n", printable(report.name), count));
   }
 
-  const job::ProgramChecks& checks_;
+  const job::ProgramChecks* checks_;  // null for SPIR-V
   const Options& options_;
 };
 
@@ -289,7 +309,7 @@ void checkGraph(const Options& options) {
 
 // Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status.
 int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
-  Printer printer(checks, options);
+  Printer printer(&checks, options);
   job::LiveCheck live(checks);
   const GracefulStop stop;
   int status = 0;
@@ -297,7 +317,7 @@ int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
     setWatchedFiles(live.watcher().watched());
     try {
       checkGraph(options);
-      status = writeReport(live.run(printer), checks, options);
+      status = writeReport(live.run(printer), &checks, options);
     } catch (const Error& error) {  // such as a second program in the folder, with --graph
       if (canFail) throw;
       status = reportFailure(error, FailureJson::none);
@@ -313,6 +333,12 @@ int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
   }
 }
 
+int checkSpirv(const Options& options) {
+  Printer printer(nullptr, options);
+  const job::ModuleCheckRequest request{options.request.programs, options.groups, options.request.device};
+  return writeReport(job::checkModuleFiles(request, printer), nullptr, options);
+}
+
 }  // namespace
 
 OptionTable checkOptions() {
@@ -323,11 +349,12 @@ OptionTable checkOptions() {
 int checkCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
+  if (options->spirv) return checkSpirv(*options);
   const job::ProgramChecks checks(options->request);
   if (options->watch) return watchPrograms(checks, *options);
   checkGraph(*options);
-  Printer printer(checks, *options);
-  return writeReport(checks.run(printer), checks, *options);
+  Printer printer(&checks, *options);
+  return writeReport(checks.run(printer), &checks, *options);
 }
 
 }  // namespace quintet::cli

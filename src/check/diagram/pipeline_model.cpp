@@ -59,8 +59,9 @@ std::string quotedList(std::string_view label, const std::vector<std::string>& n
 
 class ModelBuilder {
  public:
-  ModelBuilder(const PipelineGraph& graph, const program::SceneFacts* scene, const CheckResult& result)
-      : graph_(graph), program_(graph.program), scene_(scene) {
+  ModelBuilder(const program::Program& program, const PipelineGraph& graph, const program::SceneFacts* scene,
+               const CheckResult& result)
+      : graph_(graph), program_(program), scene_(scene) {
     model_.program = program_.name;
     if (scene_) model_.scene = scene_->name;
     model_.recursionDepth = result.recursionDepth;
@@ -77,8 +78,9 @@ class ModelBuilder {
       model_.stages.push_back({graph_.nameOf(graph_.stages[i].file), graph_.stages[i].kind, reached.contains(i), {}});
     for (std::size_t group = 0; group < program_.hitGroups.size(); ++group)
       for (std::size_t ray = 0; ray < graph_.rayCount(); ++ray) addHit({group, ray});
-    for (std::size_t i = 0; i < graph_.misses.size(); ++i)
-      model_.misses.push_back(recordOf(graph_.misses[i].name, graph_.misses[i].file, graph_.misses[i].record));
+    for (std::size_t i = 0; i < graph_.groups.misses.size(); ++i)
+      model_.misses.push_back(
+          recordOf(graph_.groups.misses[i].name, graph_.groups.misses[i].file, graph_.groups.misses[i].record));
     for (const program::Callable& callable : program_.callables)
       model_.callables.push_back(recordOf(callable.name, callable.file, callable.record));
     for (const TraceSite& site : graph_.traces) addTrace(site);
@@ -247,7 +249,7 @@ std::optional<PipelineModel> describePipeline(const program::Program& program, c
   if (!graph.error.empty()) return {};
   std::optional<program::SceneFacts> facts;
   if (scene) facts = program::factsFor(program, *scene);
-  return ModelBuilder(graph, facts ? &*facts : nullptr, result).build();
+  return ModelBuilder(program, graph, facts ? &*facts : nullptr, result).build();
 }
 
 namespace {

@@ -61,7 +61,7 @@ struct PipelineSpaces::Search {
 };
 
 PipelineSpaces::PipelineSpaces(const spirv::Module& module) {
-  stages_.push_back(std::make_unique<SpaceTags>(module));
+  stages_.push_back(std::make_unique<SpaceTags>(module, true));
   stages_[0]->run();
   stages_[0]->finish();
 }
@@ -71,7 +71,7 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
   stages_.resize(graph.stages.size());
   parallelFor(stages_.size(), [&](std::size_t i) {
     if (!graph.stages[i].facts) return;
-    stages_[i] = std::make_unique<SpaceTags>(graph.stages[i].facts->module());
+    stages_[i] = std::make_unique<SpaceTags>(graph.stages[i].facts->module(), graph.usesLibrary);
     stages_[i]->run();
   });
   const auto linkIncoming = [&](const Shared& from, std::size_t stage, Storage storage) {
@@ -84,13 +84,13 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
   for (const CallSite& site : graph.calls)
     for (const Edge& edge : site.edges)
       linkIncoming({site.stage, site.call->data}, edge.stage, Storage::IncomingCallableDataKHR);
-  for (std::size_t group = 0; group < graph.program.hitGroups.size(); ++group) {
+  for (std::size_t group = 0; group < graph.groups.hitGroups.size(); ++group) {
     for (std::size_t ray = 0; ray < graph.rayCount(); ++ray) {
       const program::HitShaders& shaders = graph.shaders({group, ray});
       const PipelineStage* intersection = graph.stage(shaders.intersection);
       const spirv::SharedVariable* attribute =
           intersection && intersection->facts ? intersection->facts->incoming(Storage::HitAttributeKHR) : nullptr;
-      if (shaders.intersection.empty()) addBarycentrics(graph, shaders);
+      if (!mayBeProcedural(graph.groups, graph.groups.hitGroups[group])) addBarycentrics(graph, shaders);
       if (!attribute) continue;
       const auto at = static_cast<std::size_t>(intersection - graph.stages.data());
       for (const std::string* file : {&shaders.closestHit, &shaders.anyHit})

@@ -109,7 +109,7 @@ bool overlaps(const spirv::Access& access, const spirv::Path& path) {
   return spirv::overlap(access.indices, indices);
 }
 
-SpaceTags::SpaceTags(const spirv::Module& module) : module_(module) {
+SpaceTags::SpaceTags(const spirv::Module& module, bool usesLibrary) : module_(module), usesLibrary_(usesLibrary) {
   const auto& instructions = module.instructions();
   Id bound = 0;
   for (const spirv::Instruction& i : instructions) bound = std::max(bound, i.result);
@@ -280,7 +280,7 @@ SpaceLeaves SpaceTags::libraryLeaves(Id type) const {
   };
   if (t.kind == TypeKind::structure && !whole.opaque) {
     for (std::size_t i = 0; i < t.members.size(); ++i) {
-      const SpaceLeaves tags = memberTags(t, i);
+      const SpaceLeaves tags = usesLibrary_ ? memberTags(t, i) : SpaceLeaves{};
       put(whole.offsets[i], tags.size() == layout(t.members[i]).count ? tags : libraryLeaves(t.members[i]));
     }
   } else if ((t.kind == TypeKind::array || t.kind == TypeKind::runtimeArray) && !whole.opaque) {

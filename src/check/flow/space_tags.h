@@ -25,7 +25,8 @@ bool overlaps(const spirv::Access& access, const spirv::Path& path);
 
 class SpaceTags {
  public:
-  explicit SpaceTags(const spirv::Module& module);
+  // `usesLibrary`: structures with the names of the shader library are those of the library.
+  SpaceTags(const spirv::Module& module, bool usesLibrary);
 
   // Adds the tags that other stages store in a shared variable. Returns whether it changes the variable's tags.
   bool add(spirv::Id variable, const SpaceLeaves& leaves);
@@ -95,6 +96,7 @@ class SpaceTags {
   void pushUsers(spirv::Id value);
 
   const spirv::Module& module_;
+  const bool usesLibrary_;
   std::vector<SpaceLeaves> tags_;  // by id; empty for undefined
   std::vector<std::uint8_t> visits_;
   std::unordered_map<spirv::Id, SpaceLeaves> variables_;  // that are stored to

@@ -41,6 +41,7 @@ void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
     }
   }
   if (seeds.empty()) throw Error("no SPIR-V module is small enough");
+  corpora["modules"] = seeds;
 }
 
 }  // namespace quintet::fuzz

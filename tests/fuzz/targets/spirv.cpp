@@ -23,7 +23,10 @@ void readInput(Input input) {
   check::StageContext context;
   context.hasAnyHit = true;
   context.defects = {true, true, true, true};
-  for (const Diagnostic& diagnostic : check::checkStage(*module, context))
+  context.usesLibrary = true;
+  std::vector<Diagnostic> found = check::checkStage(*module, context);
+  for (Diagnostic& diagnostic : check::checkProgramStage(*module, {})) found.push_back(std::move(diagnostic));
+  for (const Diagnostic& diagnostic : found)
     if (diagnostic.id.empty()) reportFinding("a diagnostic has no id");
   const spirv::StageFacts facts(std::move(*module));
   (void)facts.frameBytes();

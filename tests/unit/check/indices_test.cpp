@@ -22,8 +22,8 @@ layout(push_constant, scalar) uniform P { Colors colors; Indices indices; uint s
 layout(set = 0, binding = 1) uniform sampler2D textures[];
 )";
 
-std::vector<std::string> closestHit(const std::string& body, const StageContext& context = {}) {
-  return checkText(Stage::closestHit, kAddressHead + ("void main() {\n" + body + "\n}\n"), context);
+std::vector<std::string> closestHit(const std::string& body, const ProgramStageContext& program = {}) {
+  return checkText(Stage::closestHit, kAddressHead + ("void main() {\n" + body + "\n}\n"), {}, program);
 }
 
 TEST(CheckInstanceIndices, ReportsArrayIndices) {
@@ -41,7 +41,7 @@ TEST(CheckInstanceIndices, ReportsComparisons) {
 TEST(CheckInstanceIndices, AcceptsOtherIndicesAndOrderedPrograms) {
   EXPECT_THAT(closestHit("payload.color = push.colors.at[gl_InstanceCustomIndexEXT];"), IsEmpty());
   EXPECT_THAT(closestHit("payload.color = vec3(float(gl_InstanceID) * 0.1);"), IsEmpty());
-  StageContext ordered;
+  ProgramStageContext ordered;
   ordered.keepsInstanceOrder = true;
   EXPECT_THAT(closestHit("payload.color = push.colors.at[gl_InstanceID];", ordered), IsEmpty());
 }

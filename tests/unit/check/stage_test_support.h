@@ -5,6 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "base/file.h"
 #include "check/check.h"
 #include "check/rules/rules.h"
@@ -44,11 +50,17 @@ inline std::vector<std::string> linesOf(const std::vector<Diagnostic>& diagnosti
   return lines;
 }
 
-inline std::vector<std::string> checkText(shader::Stage stage, const std::string& text,
-                                          const StageContext& context = {}) {
+// The diagnostics of a stage of a program.
+inline std::vector<std::string> checkText(shader::Stage stage, const std::string& text, StageContext context = {},
+                                          const ProgramStageContext& program = {}) {
   const auto module = compileStage(stage, text);
   EXPECT_TRUE(module);
-  return module ? linesOf(checkStage(*module, context)) : std::vector<std::string>{};
+  if (!module) return {};
+  context.usesLibrary = true;
+  std::vector<Diagnostic> found = checkStage(*module, context);
+  for (Diagnostic& d : checkProgramStage(*module, program)) found.push_back(std::move(d));
+  std::ranges::stable_sort(found, {}, &Diagnostic::id);
+  return linesOf(found);
 }
 
 }  // namespace quintet::check

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q302, Q501 to Q506: arguments of traces and calls that select records of the shader binding table. Q605: ray flags.
+// Q302, Q502 to Q506: arguments of traces and calls that select records of the shader binding table. Q605: ray flags. Q501:
+// hit records in Quintet's layout, one per geometry and ray type.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/plural.h"
 #include "check/rules/rules.h"
-#include "check/value_context.h"
 
 namespace quintet::check {
 namespace {
 
 constexpr std::uint32_t kRecordBits = 0xF, kMissBits = 0xFFFF, kMaskBits = 0xFF;
+
+// The values of at least `count` that occur; a lower bound if the values are not known.
+std::vector<std::uint32_t> wrongValues(const spirv::ArgumentValues& argument, std::uint32_t count) {
+  if (!argument.certain()) {
+    const auto value = argument.atLeast(count);
+    return value ? std::vector{*value} : std::vector<std::uint32_t>{};
+  }
+  std::vector<std::uint32_t> values = argument.values;
+  std::erase_if(values, [&](std::uint32_t value) { return value < count; });
+  return values;
+}
+
+std::string_view boundText(const spirv::ArgumentValues& argument) { return argument.certain() ? "" : "at least "; }
 
 class ArgumentRule {
  public:
@@ -20,9 +33,8 @@ class ArgumentRule {
   void check(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
     location_ = graph_.location(site);
-    if (inRange(trace.offset, "offset", "Q503", kRecordBits) && inRange(trace.stride, "stride", "Q503", kRecordBits))
-      checkRecords(trace);
-    if (inRange(trace.miss, "miss index", "Q504", kMissBits)) checkMiss(trace);
+    if (inRange(trace.offset, "offset", "Q503", kRecordBits)) inRange(trace.stride, "stride", "Q503", kRecordBits);
+    if (inRange(trace.miss, "miss index", "Q504", kMissBits) && graph_.groups.tablesKnown) checkMiss(trace);
     for (const std::uint32_t mask : wrongValues(trace.mask, kMaskBits + 1))
       report_.add("Q505", location_,
                   fmt::format("the cull mask of this trace is {}{:#x}, but only its low 8 bits, {:#04x}, are used",
@@ -36,15 +48,17 @@ class ArgumentRule {
 
   void check(const CallSite& site) {
     location_ = graph_.location(site);
-    const std::size_t count = graph_.program.callables.size();
+    const std::size_t count = graph_.groups.callables.size();
     const spirv::ArgumentValues& index = site.call->index;
+    const std::string& noun = graph_.groups.noun;
+    if (!graph_.groups.tablesKnown && count > 0) return;
     for (const std::uint32_t value : wrongValues(index, static_cast<std::uint32_t>(count)))
       report_.add("Q302", location_,
-                  fmt::format("the callable index of this call is {}{}, but the program has {}", boundText(index),
-                              value, countText(count, "callable shader")));
+                  fmt::format("the callable index of this call is {}{}, but the {} has {}", boundText(index), value,
+                              noun, countText(count, "callable shader")));
     if (!index.known && count > 0) checkSceneIndex(site, static_cast<std::uint32_t>(count));
     if (!index.known && count == 0)
-      report_.add("Q302", location_, "this calls a callable shader, but the program has none");
+      report_.add("Q302", location_, fmt::format("this calls a callable shader, but the {} has none", noun));
   }
 
  private:
@@ -53,33 +67,18 @@ class ArgumentRule {
     if (!input_.scene || site.call->index.atLeast(count)) return;
     const spirv::Module& module = graph_.facts(site).module();
     const spirv::Id index = module.instructions()[site.call->instruction].at(0);
-    const spirv::ValueRanges ranges(module, valueContext(graph_.program, graph_.stages[site.stage].file, input_.scene));
+    const spirv::ValueRanges ranges(module, graph_.context(graph_.stages[site.stage].file, input_.scene));
     const auto value = ranges.rangeAt(site.call->instruction, index).atLeast(count);
     if (value && !ranges.guarded(site.call->instruction, index))
       report_.add("Q302", location_,
-                  fmt::format("the callable index of this call is up to {:.0f} in {}, but the program has {}", *value,
-                              input_.scene->name, countText(count, "callable shader")));
+                  fmt::format("the callable index of this call is up to {:.0f} in {}, but the {} has {}", *value,
+                              input_.scene->name, graph_.groups.noun, countText(count, "callable shader")));
   }
 
   // "no miss shaders", "1 miss shader (index 0)", "3 miss shaders (index 0 to 2)"
   static std::string countText(std::size_t count, std::string_view noun) {
     if (count == 0) return fmt::format("no {}s", noun);
     return counted(count, noun) + (count == 1 ? " (index 0)" : fmt::format(" (index 0 to {})", count - 1));
-  }
-
-  // The values of at least `count` that occur; a lower bound if the values are not known.
-  static std::vector<std::uint32_t> wrongValues(const spirv::ArgumentValues& argument, std::uint32_t count) {
-    if (!argument.certain()) {
-      const auto value = argument.atLeast(count);
-      return value ? std::vector{*value} : std::vector<std::uint32_t>{};
-    }
-    std::vector<std::uint32_t> values = argument.values;
-    std::erase_if(values, [&](std::uint32_t value) { return value < count; });
-    return values;
-  }
-
-  static std::string_view boundText(const spirv::ArgumentValues& argument) {
-    return argument.certain() ? "" : "at least ";
   }
 
   bool inRange(const spirv::ArgumentValues& argument, std::string_view name, std::string_view id, std::uint32_t limit) {
@@ -93,73 +92,10 @@ class ArgumentRule {
   }
 
   void checkMiss(const spirv::TraceFacts& trace) {
-    for (const std::uint32_t index : wrongValues(trace.miss, static_cast<std::uint32_t>(graph_.misses.size())))
+    for (const std::uint32_t index : wrongValues(trace.miss, static_cast<std::uint32_t>(graph_.groups.misses.size())))
       report_.add("Q502", location_,
-                  fmt::format("the miss index of this trace is {}{}, but the program has {}", boundText(trace.miss),
-                              index, countText(graph_.misses.size(), "miss shader")));
-  }
-
-  void checkRecords(const spirv::TraceFacts& trace) {
-    const std::size_t rays = graph_.rayCount();
-    if (graph_.program.hitGroups.empty()) return;
-    for (const std::uint32_t offset : wrongValues(trace.offset, static_cast<std::uint32_t>(rays))) {
-      report_.add("Q501", location_,
-                  fmt::format("the offset of this trace is {}{}, but each geometry has {} (one per ray type){}",
-                              boundText(trace.offset), offset, counted(rays, "record"), sceneText(trace, offset)));
-      return;
-    }
-    if (!trace.stride.certain()) return;
-    for (const std::uint32_t stride : trace.stride.values)
-      if (stride != 0 && stride != rays) checkStride(trace, stride);
-  }
-
-  // With a stride other than the number of ray types, all but the first geometry of an instance use wrong records.
-  void checkStride(const spirv::TraceFacts& trace, std::uint32_t stride) {
-    const std::size_t rays = graph_.rayCount();
-    const std::string text =
-        fmt::format("the stride of this trace is {}, but each geometry has {} (one per ray type): ", stride,
-                    counted(rays, "record"));
-    if (!input_.scene) {
-      report_.add("Q501", location_, text + "the second geometry of a mesh uses the records of a different geometry");
-      return;
-    }
-    for (const program::InstanceFacts& instance : input_.scene->instances) {
-      if (!seen(trace, instance) || instance.geometryCount < 2) continue;
-      const std::size_t last = std::size_t{instance.geometryCount} - 1;
-      const std::size_t record = instance.firstGeometry * rays + last * stride + firstOffset(trace);
-      report_.add(
-          "Q501", location_,
-          text + fmt::format("geometry {} of instance '{}' uses record {} instead of {}{}", last, instance.name, record,
-                             (instance.firstGeometry + last) * rays + firstOffset(trace), beyond(record)));
-      return;
-    }
-  }
-
-  static bool seen(const spirv::TraceFacts& trace, const program::InstanceFacts& instance) {
-    return trace.mask.mayHave(instance.mask & kMaskBits);
-  }
-  static std::uint32_t firstOffset(const spirv::TraceFacts& trace) {
-    return trace.offset.known ? trace.offset.values.front() : 0;
-  }
-
-  std::string beyond(std::size_t record) const {
-    const std::size_t count = input_.scene->geometries.size() * graph_.rayCount();
-    return record < count ? std::string() : fmt::format("; the table has {}", counted(count, "record"));
-  }
-
-  // ": instance 'ball' of scene.glb uses record 7; the table has 6 records"
-  std::string sceneText(const spirv::TraceFacts& trace, std::uint32_t offset) const {
-    if (!input_.scene) return {};
-    const std::uint32_t stride =
-        trace.stride.exact() ? trace.stride.values[0] : static_cast<std::uint32_t>(graph_.rayCount());
-    for (const program::InstanceFacts& instance : input_.scene->instances) {
-      const std::size_t record = instance.firstGeometry * graph_.rayCount() +
-                                 (std::max(1u, instance.geometryCount) - 1) * std::size_t{stride} + offset;
-      if (seen(trace, instance) && !beyond(record).empty())
-        return fmt::format(": instance '{}' of {} uses record {}{}", instance.name, input_.scene->name, record,
-                           beyond(record));
-    }
-    return {};
+                  fmt::format("the miss index of this trace is {}{}, but the {} has {}", boundText(trace.miss), index,
+                              graph_.groups.noun, countText(graph_.groups.misses.size(), "miss shader")));
   }
 
   static bool isShadow(const spirv::TraceFacts& trace) {
@@ -170,7 +106,9 @@ class ArgumentRule {
   // ray's own type, or one that no ray uses while this one does not return what is read.
   void checkShadowMiss(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
-    if (!isShadow(trace) || !trace.miss.exact() || trace.miss.values[0] >= graph_.misses.size()) return;
+    if (!graph_.groups.tablesKnown || !isShadow(trace) || !trace.miss.exact() ||
+        trace.miss.values[0] >= graph_.groups.misses.size())
+      return;
     const auto reaches = [&](const TraceSite& other, const std::string& file) {
       return std::ranges::any_of(
           other.edges, [&](const Edge& e) { return e.role == Role::miss && graph_.stages[e.stage].file == file; });
@@ -180,12 +118,13 @@ class ArgumentRule {
           graph_.traces, [&](const TraceSite& other) { return !isShadow(*other.trace) && reaches(other, file); });
     };
     const auto forRadiance = [&](const std::string& file) { return radianceTrace(file) != graph_.traces.end(); };
-    const program::MissShader& used = graph_.misses[trace.miss.values[0]];
+    const program::MissShader& used = graph_.groups.misses[trace.miss.values[0]];
     if (!forRadiance(used.file)) return;
-    for (std::size_t i = 0; i < graph_.misses.size(); ++i) {
-      const std::string& file = graph_.misses[i].file;
+    for (std::size_t i = 0; i < graph_.groups.misses.size(); ++i) {
+      const std::string& file = graph_.groups.misses[i].file;
       if (forRadiance(file)) continue;
-      const bool own = trace.offset.exact() && trace.offset.values[0] == i;
+      const bool byRayType = graph_.groups.hitRecords == HitRecords::byRayType;
+      const bool own = byRayType && trace.offset.exact() && trace.offset.values[0] == i;
       const bool unused =
           std::ranges::none_of(graph_.traces, [&](const TraceSite& other) { return reaches(other, file); });
       if (!own && (!unused || returnsWhatIsRead(site))) continue;
@@ -246,12 +185,99 @@ class ArgumentRule {
   SourceLocation location_;  // of the trace or call
 };
 
+// Quintet's layout: geometry k has the records k * rays to k * rays + rays - 1.
+class LayoutRule {
+ public:
+  LayoutRule(const ProgramInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {}
+
+  void check(const TraceSite& site) {
+    location_ = graph_.location(site);
+    const spirv::TraceFacts& trace = *site.trace;
+    if (wrongValues(trace.offset, kRecordBits + 1).empty() && wrongValues(trace.stride, kRecordBits + 1).empty())
+      checkRecords(trace);  // Q503 reports the others
+  }
+
+ private:
+  void checkRecords(const spirv::TraceFacts& trace) {
+    const std::size_t rays = graph_.rayCount();
+    if (graph_.groups.hitGroups.empty()) return;
+    for (const std::uint32_t offset : wrongValues(trace.offset, static_cast<std::uint32_t>(rays))) {
+      report_.add("Q501", location_,
+                  fmt::format("the offset of this trace is {}{}, but each geometry has {} (one per ray type){}",
+                              boundText(trace.offset), offset, counted(rays, "record"), sceneText(trace, offset)));
+      return;
+    }
+    if (!trace.stride.certain()) return;
+    for (const std::uint32_t stride : trace.stride.values)
+      if (stride != 0 && stride != rays) checkStride(trace, stride);
+  }
+
+  // With a stride other than the number of ray types, all but the first geometry of an instance use wrong records.
+  void checkStride(const spirv::TraceFacts& trace, std::uint32_t stride) {
+    const std::size_t rays = graph_.rayCount();
+    const std::string text =
+        fmt::format("the stride of this trace is {}, but each geometry has {} (one per ray type): ", stride,
+                    counted(rays, "record"));
+    if (!input_.scene) {
+      report_.add("Q501", location_, text + "the second geometry of a mesh uses the records of a different geometry");
+      return;
+    }
+    for (const program::InstanceFacts& instance : input_.scene->instances) {
+      if (!seen(trace, instance) || instance.geometryCount < 2) continue;
+      const std::size_t last = std::size_t{instance.geometryCount} - 1;
+      const std::size_t record = instance.firstGeometry * rays + last * stride + firstOffset(trace);
+      report_.add(
+          "Q501", location_,
+          text + fmt::format("geometry {} of instance '{}' uses record {} instead of {}{}", last, instance.name, record,
+                             (instance.firstGeometry + last) * rays + firstOffset(trace), beyond(record)));
+      return;
+    }
+  }
+
+  static bool seen(const spirv::TraceFacts& trace, const program::InstanceFacts& instance) {
+    return trace.mask.mayHave(instance.mask & kMaskBits);
+  }
+  static std::uint32_t firstOffset(const spirv::TraceFacts& trace) {
+    return trace.offset.known ? trace.offset.values.front() : 0;
+  }
+
+  std::string beyond(std::size_t record) const {
+    const std::size_t count = input_.scene->geometries.size() * graph_.rayCount();
+    return record < count ? std::string() : fmt::format("; the table has {}", counted(count, "record"));
+  }
+
+  // ": instance 'ball' of scene.glb uses record 7; the table has 6 records"
+  std::string sceneText(const spirv::TraceFacts& trace, std::uint32_t offset) const {
+    if (!input_.scene) return {};
+    const std::uint32_t stride =
+        trace.stride.exact() ? trace.stride.values[0] : static_cast<std::uint32_t>(graph_.rayCount());
+    for (const program::InstanceFacts& instance : input_.scene->instances) {
+      const std::size_t record = instance.firstGeometry * graph_.rayCount() +
+                                 (std::max(1u, instance.geometryCount) - 1) * std::size_t{stride} + offset;
+      if (seen(trace, instance) && !beyond(record).empty())
+        return fmt::format(": instance '{}' of {} uses record {}{}", instance.name, input_.scene->name, record,
+                           beyond(record));
+    }
+    return {};
+  }
+
+  const ProgramInput& input_;
+  const PipelineGraph& graph_;
+  Report& report_;
+  SourceLocation location_;  // of the trace
+};
+
 }  // namespace
 
 void checkArguments(const CheckInput& input, Report& report) {
   ArgumentRule rule(input, report);
   for (const TraceSite& site : input.graph.traces) rule.check(site);
   for (const CallSite& site : input.graph.calls) rule.check(site);
+}
+
+void checkRecordLayout(const ProgramInput& input, Report& report) {
+  LayoutRule rule(input, report);
+  for (const TraceSite& site : input.graph.traces) rule.check(site);
 }
 
 }  // namespace quintet::check

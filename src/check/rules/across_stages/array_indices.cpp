@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
-#include "check/value_context.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -123,7 +122,7 @@ void checkArrayIndices(const CheckInput& input, Report& report) {
     const PipelineStage& stage = graph.stages[i];
     if (!stage.facts) return;
     const spirv::Module& module = stage.facts->module();
-    const spirv::ValueRanges ranges(module, valueContext(graph.program, stage.file, input.scene));
+    const spirv::ValueRanges ranges(module, graph.context(stage.file, input.scene));
     Report ofStage;
     IndexRule(module, ranges, input.scene, ofStage).check();
     found[i] = ofStage.take();

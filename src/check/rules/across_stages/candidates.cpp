@@ -6,7 +6,6 @@
 
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
-#include "check/value_context.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -24,7 +23,7 @@ const spirv::Instruction* ignoreOfEachPath(const CheckInput& input, const Pipeli
   const spirv::Module& module = stage.facts->module();
   const spirv::Function* entry = module.entry();
   if (!entry || entry->blocks.empty() || !stage.facts->ignores() || callsFunctions(module)) return nullptr;
-  spirv::ValueContext context = valueContext(input.graph.program, stage.file, input.scene);
+  spirv::ValueContext context = input.graph.context(stage.file, input.scene);
   context.noNan = true;
   const spirv::ValueRanges ranges(module, std::move(context));
   const auto& blocks = entry->blocks;
@@ -119,7 +118,7 @@ void checkCandidates(const CheckInput& input, Report& report) {
         "Q206", mainLocation(graph, stage),
         fmt::format("intersection shader '{}' never reports an intersection, so no ray hits its geometry", stage.file));
   }
-  for (std::size_t group = 0; group < graph.program.hitGroups.size(); ++group)
+  for (std::size_t group = 0; group < graph.groups.hitGroups.size(); ++group)
     for (std::size_t ray = 0; ray < graph.rayCount(); ++ray)
       if (const PipelineStage* stage = graph.stage(graph.shaders({group, ray}).anyHit); stage && stage->facts)
         checkAnyHit(input, *stage, {group, ray}, report);

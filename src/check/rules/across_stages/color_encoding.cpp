@@ -34,8 +34,8 @@ bool isTextures(const std::string& name) { return name == "textures" || name == 
 
 class ColorEncoding {
  public:
-  ColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report)
-      : graph_(graph), spaces_(spaces), report_(report) {}
+  ColorEncoding(const ProgramInput& input, const PipelineSpaces& spaces, Report& report)
+      : graph_(input.graph), program_(input.program), spaces_(spaces), report_(report) {}
 
   void check() {
     for (std::size_t stage = 0; stage < graph_.stages.size(); ++stage) {
@@ -45,7 +45,7 @@ class ColorEncoding {
         if (spirv::isExtended(module, i, GLSLstd450Pow)) checkDecoding(stage, i);
         if (i.op != Op::OpStore) continue;
         const OutputAccess access = outputOf(module, i.at(0));
-        const auto& outputs = graph_.program.outputs;
+        const auto& outputs = program_.outputs;
         if (access.target == OutputTarget::output && access.slot < outputs.size() &&
             outputs[access.slot].kind == program::OutputKind::color)
           follow(stage, i.at(1), outputs[access.slot]);
@@ -220,7 +220,7 @@ class ColorEncoding {
     for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, from)) {
       const std::string_view structure = libraryName(selected.structure.name);
       if (structure == "Parameters")
-        return std::ranges::any_of(graph_.program.parameters, [&](const program::Parameter& p) {
+        return std::ranges::any_of(program_.parameters, [&](const program::Parameter& p) {
           return p.name == selected.name() && p.type == program::ParameterType::image && p.sRgb;
         });
       if (structure == "MaterialData")
@@ -245,7 +245,7 @@ class ColorEncoding {
   std::optional<double> defaultOf(const spirv::Module& module, Id pointer) const {
     for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, module.access(pointer)))
       if (libraryName(selected.structure.name) == "Parameters")
-        for (const program::Parameter& p : graph_.program.parameters)
+        for (const program::Parameter& p : program_.parameters)
           if (p.name == selected.name()) return p.defaultValue[0];
     return {};
   }
@@ -261,6 +261,7 @@ class ColorEncoding {
   }
 
   const PipelineGraph& graph_;
+  const program::Program& program_;
   const PipelineSpaces& spaces_;
   Report& report_;
   std::vector<Open> open_;
@@ -269,8 +270,8 @@ class ColorEncoding {
 
 }  // namespace
 
-void checkColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report) {
-  ColorEncoding(graph, spaces, report).check();
+void checkColorEncoding(const ProgramInput& input, const PipelineSpaces& spaces, Report& report) {
+  ColorEncoding(input, spaces, report).check();
 }
 
 }  // namespace quintet::check

@@ -93,11 +93,7 @@ class EndlessRecursion {
     return std::ranges::any_of(sites_, [&](const TraceSite* site) { return site->stage == stage; });
   }
 
-  bool isUsed(std::size_t group) const {
-    return !input_.scene || std::ranges::any_of(input_.scene->geometries, [&](const program::GeometryFacts& geometry) {
-      return program::hitGroupFor(graph_.program, geometry) == group;
-    });
-  }
+  bool isUsed(std::size_t group) const { return !input_.usedGroups || input_.usedGroups->contains(group); }
 
   // A single surface can be convex: then no ray that leaves it hits it again. An unknown scene can be such a surface.
   bool canBeConvex() const {
@@ -107,7 +103,7 @@ class EndlessRecursion {
   // Returns the edge to a stage with such a trace if each hit of the trace, or its miss, runs one; else null.
   const Edge* next(const TraceSite& site) const {
     const Edge* found = nullptr;
-    bool allHits = !site.skipsClosestHit() && !canBeConvex();
+    bool allHits = !site.skipsClosestHit() && !canBeConvex() && !site.assumesHits;
     for (const HitGroupRay hit : site.hits) {
       if (!isUsed(hit.group)) continue;
       const auto edge = std::ranges::find_if(site.edges, [&](const Edge& e) {
@@ -149,15 +145,15 @@ class EndlessRecursion {
 
 void checkEndlessRecursion(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
-  if (!graph.program.declaredRecursion) return;  // Q401
+  if (!graph.groups.declaredRecursion) return;  // Q401
   const std::set<std::size_t> reachable = graph.reachableStages();
   for (const auto& [site, edge] : EndlessRecursion(input).cycles()) {
     if (!reachable.contains(site->stage)) continue;
-    report.add("Q403", graph.location(*site),
-               fmt::format("this trace always runs and its {} runs the {}, which traces again: no condition ends the "
-                           "recursion at the declared depth {}",
-                           edge->role == Role::miss ? "miss" : "hit", graph.describe(*edge),
-                           *graph.program.declaredRecursion));
+    report.add(
+        "Q403", graph.location(*site),
+        fmt::format("this trace always runs and its {} runs the {}, which traces again: no condition ends the "
+                    "recursion at the declared depth {}",
+                    edge->role == Role::miss ? "miss" : "hit", graph.describe(*edge), *graph.groups.declaredRecursion));
   }
 }
 

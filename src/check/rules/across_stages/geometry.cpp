@@ -37,10 +37,11 @@ struct TraceGeometryPair {
 
 class GeometryRule {
  public:
-  GeometryRule(const CheckInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {}
+  GeometryRule(const ProgramInput& input, Report& report)
+      : input_(input), graph_(input.graph), program_(input.program), report_(report) {}
 
   void check() {
-    for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group) checkBinding(group);
+    for (std::size_t group = 0; group < program_.hitGroups.size(); ++group) checkBinding(group);
     if (input_.scene) {
       collectPairs();
       for (const TraceGeometryPair& pair : pairs_)
@@ -53,7 +54,7 @@ class GeometryRule {
   }
 
  private:
-  const program::HitGroup& groupOf(HitGroupRay hit) const { return graph_.program.hitGroups[hit.group]; }
+  const program::HitGroup& groupOf(HitGroupRay hit) const { return program_.hitGroups[hit.group]; }
 
   bool isTraced(std::size_t ray, std::uint32_t skipFlag) const {
     return std::ranges::any_of(graph_.traces, [&](const TraceSite& site) {
@@ -72,7 +73,7 @@ class GeometryRule {
 
   // Q601, Q602: contradictions in the group itself.
   void checkBinding(std::size_t index) {
-    const program::HitGroup& group = graph_.program.hitGroups[index];
+    const program::HitGroup& group = program_.hitGroups[index];
     const bool procedural = graph_.hasIntersection(index);
     if (procedural && binds(group, "triangles"))
       report_.add("Q602", graph_.descriptionLocation(group.line),
@@ -96,7 +97,7 @@ class GeometryRule {
 
   void collectPairs() {
     const program::SceneFacts& scene = *input_.scene;
-    unknownNames_ = unknownNames(graph_.program, scene);
+    unknownNames_ = unknownNames(program_, scene);
     for (const TraceSite& site : graph_.traces)
       for (const program::InstanceFacts& instance : scene.instances)
         for (std::uint32_t k = 0; k < instance.geometryCount && instance.firstGeometry + k < scene.geometries.size();
@@ -108,8 +109,7 @@ class GeometryRule {
     const spirv::TraceFacts& trace = *site.trace;
     const program::SceneFacts& scene = *input_.scene;
     const program::GeometryFacts& geometry = scene.geometries[instance.firstGeometry + k];
-    if (graph_.program.hitGroups.empty() ||
-        trace.flags.mustHave(geometry.procedural() ? kFlagSkipAabbs : kFlagSkipTriangles))
+    if (program_.hitGroups.empty() || trace.flags.mustHave(geometry.procedural() ? kFlagSkipAabbs : kFlagSkipTriangles))
       return;
     TraceGeometryPair pair{&site, &instance, &geometry, {}, false, false};
     pair.misplaced = isMisplaced(geometry, unknownNames_);
@@ -122,7 +122,7 @@ class GeometryRule {
     // With a stride of 0, all geometries of the instance use the records of the first one. Q511 reports geometries that
     // need other records.
     for (const std::size_t ray : graph_.rayTypes(trace)) {
-      pair.hit = {program::hitGroupFor(graph_.program, geometry), ray};
+      pair.hit = {program::hitGroupFor(program_, geometry), ray};
       pairs_.push_back(pair);
     }
   }
@@ -133,7 +133,7 @@ class GeometryRule {
     static const program::GeometryFacts kOpaque, kAlpha{program::GeometryKind::triangles, true, {}, {}};
     for (const TraceSite& site : graph_.traces) {
       for (const HitGroupRay hit : site.hits) {
-        const bool alpha = graph_.program.anyHitForAll || !bindsOnly(groupOf(hit), "opaque");
+        const bool alpha = program_.anyHitForAll || !bindsOnly(groupOf(hit), "opaque");
         const spirv::ArgumentValues& flags = site.trace->flags;
         TraceGeometryPair pair{&site, &kInstance, alpha ? &kAlpha : &kOpaque, hit, false, false};
         pair.opaque = flags.mustHave(kFlagOpaque) || (!alpha && !flags.mayHave(kFlagNoOpaque));
@@ -166,7 +166,7 @@ class GeometryRule {
   }
 
   bool hasAnyHits(std::size_t ray) const {
-    for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group)
+    for (std::size_t group = 0; group < program_.hitGroups.size(); ++group)
       if (!graph_.shaders({group, ray}).anyHit.empty()) return true;
     return false;
   }
@@ -213,7 +213,7 @@ class GeometryRule {
 
   // Q603: any-hit shaders whose geometry is always opaque.
   void checkAnyHits() {
-    for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group)
+    for (std::size_t group = 0; group < program_.hitGroups.size(); ++group)
       for (std::size_t ray = 0; ray < graph_.rayCount(); ++ray)
         if (!graph_.shaders({group, ray}).anyHit.empty()) checkAnyHit({group, ray});
   }
@@ -248,8 +248,9 @@ class GeometryRule {
     return flags.mustHave(kFlagOpaque) || flags.mustHave(kFlagCullNoOpaque);
   }
 
-  const CheckInput& input_;
+  const ProgramInput& input_;
   const PipelineGraph& graph_;
+  const program::Program& program_;
   Report& report_;
   std::vector<TraceGeometryPair> pairs_;
   std::vector<UnknownName> unknownNames_;  // of the scene
@@ -257,6 +258,6 @@ class GeometryRule {
 
 }  // namespace
 
-void checkGeometry(const CheckInput& input, Report& report) { GeometryRule(input, report).check(); }
+void checkGeometry(const ProgramInput& input, Report& report) { GeometryRule(input, report).check(); }
 
 }  // namespace quintet::check

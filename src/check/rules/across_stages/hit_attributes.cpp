@@ -33,13 +33,14 @@ void checkTypes(const PipelineGraph& graph, HitGroupRay hit, Report& report) {
         stage && stage->facts ? stage->facts->incoming(StorageClass::HitAttributeKHR) : nullptr;
     if (!read) continue;
     const auto& types = stage->facts->module().types();
+    if (!graph.groups.groupsKnown && graph.groups.hasIntersections) continue;
     if (files.intersection.empty()) {
       // A group for procedural geometry without an intersection shader is Q601.
       if (!isVec2(types, read->type) && !graph.hasIntersection(hit.group))
         report.add("Q202", graph.location(*stage, read->declaration),
                    fmt::format("hit attribute '{}' is {}, but {} is for triangles, whose attribute is vec2", read->name,
                                types.describe(read->type), graph.describe(hit)),
-                   {relatedTo(graph.descriptionLocation(graph.program.hitGroups[hit.group].line), "the hit group")});
+                   {relatedTo(graph.descriptionLocation(graph.groups.hitGroups[hit.group].line), "the hit group")});
     } else if (written) {
       const auto& writtenTypes = writer->facts->module().types();
       if (const auto difference = spirv::differenceOf(writtenTypes, written->type, types, read->type))
@@ -149,7 +150,7 @@ void checkWritten(const PipelineGraph& graph, HitGroupRay hit, Report& report) {
 
 void checkHitAttributes(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
-  for (std::size_t group = 0; group < graph.program.hitGroups.size(); ++group)
+  for (std::size_t group = 0; group < graph.groups.hitGroups.size(); ++group)
     for (std::size_t ray = 0; ray < graph.rayCount(); ++ray) {
       checkTypes(graph, {group, ray}, report);
       checkWritten(graph, {group, ray}, report);

@@ -20,10 +20,10 @@ bool onlyProcedural(const PipelineGraph& graph, const std::string& file, const p
   bool found = false;
   const bool sceneHasTriangles =
       !scene || std::ranges::any_of(scene->geometries, [](const auto& geometry) { return !geometry.procedural(); });
-  for (const program::HitGroup& group : graph.program.hitGroups) {
+  for (const program::HitGroup& group : graph.groups.hitGroups) {
     for (const auto& [ray, shaders] : group.shaders) {
       if (shaders.closestHit != file && shaders.anyHit != file) continue;
-      if (!graph.hasIntersection(static_cast<std::size_t>(&group - graph.program.hitGroups.data()))) return false;
+      if (!graph.hasIntersection(static_cast<std::size_t>(&group - graph.groups.hitGroups.data()))) return false;
       found = true;
     }
   }
@@ -36,11 +36,6 @@ bool isHitKind(const spirv::Module& module, spirv::Id value) {
   return load && spirv::loadsBuiltIn(module, *load, spv::BuiltIn::HitKindKHR);
 }
 
-bool isOwnFile(const PipelineGraph& graph, const std::string& file) {
-  return std::ranges::any_of(graph.program.files,
-                             [&](const auto& entry) { return graph.program.path(entry.first) == file; });
-}
-
 void checkTriangleKinds(const PipelineGraph& graph, const PipelineStage& stage, Report& report) {
   const spirv::Module& module = stage.facts->module();
   for (const spirv::Instruction& i : module.instructions()) {
@@ -50,7 +45,7 @@ void checkTriangleKinds(const PipelineGraph& graph, const PipelineStage& stage, 
     const std::optional<std::uint32_t> kind = module.constantBits(first ? i.at(1) : i.at(0));
     if (kind != kFrontFacing && kind != kBackFacing) continue;
     const SourceLocation location = module.location(i, "gl_HitKindEXT");
-    if (!isOwnFile(graph, location.file)) continue;  // a function of the library for both kinds of geometry
+    if (!graph.isOwnFile(location.file)) continue;  // a function of the library for both kinds of geometry
     report.addOncePerLine(
         "Q607", graph.location(stage, location),
         fmt::format("gl_HitKindEXT is compared with gl_HitKind{}FacingTriangleEXT, but this shader runs only for "
@@ -61,8 +56,8 @@ void checkTriangleKinds(const PipelineGraph& graph, const PipelineStage& stage, 
 
 // In the lecture form, the library reports; the location is then the first report in the user's file.
 SourceLocation locationOf(const PipelineGraph& graph, const PipelineStage& stage, const SourceLocation& location) {
-  if (isOwnFile(graph, location.file)) return location;
-  const std::string file = graph.program.path(graph.program.descriptionFile);
+  if (graph.isOwnFile(location.file)) return location;
+  const std::string file = graph.groups.path(graph.groups.descriptionFile);
   const std::string_view text = stage.facts->module().source(file);
   const auto found = spirv::findWord(text, "reportIntersectionEXT");
   return found ? SourceLocation{file, found->line, found->column} : graph.location(stage, location);

@@ -34,14 +34,15 @@ struct Store {
 
 class OutputRule {
  public:
-  OutputRule(const CheckInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {
+  OutputRule(const ProgramInput& input, Report& report)
+      : input_(input), graph_(input.graph), program_(input.program), report_(report) {
     for (const PipelineStage& stage : graph_.stages)
       if (stage.facts) collect(stage);
   }
 
   void check() {
     if (unknown_ || !graph_.error.empty()) return;
-    const program::Program& program = graph_.program;
+    const program::Program& program = program_;
     for (std::uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
       const program::Output& output = program.outputs[slot];
       if (output.isHeatMap) continue;  // a variant of the program stores it
@@ -71,9 +72,9 @@ class OutputRule {
   }
 
   void reportMissing(const program::Output& output) {
-    const PipelineStage* generation = graph_.stage(graph_.program.rayGeneration);
+    const PipelineStage* generation = graph_.stage(program_.rayGeneration);
     if (!generation) return;
-    const bool lecture = graph_.program.accumulation == program::Accumulation::program && output.line == 0;
+    const bool lecture = program_.accumulation == program::Accumulation::program && output.line == 0;
     report_.add("Q712", output.line > 0 ? graph_.descriptionLocation(output.line) : mainLocation(graph_, *generation),
                 lecture ? std::string("no shader writes the image: the ray generation shader does not call gsnSetPixel")
                         : fmt::format("no shader stores output '{}': there is no storeOutput(kOutput_{}, pixel, sum)",
@@ -96,7 +97,7 @@ class OutputRule {
       if (instruction.op != Op::OpStore) return;
       const auto loads = [&](const spirv::Instruction& i) { return loadsOutput(module, i, slot); };
       if (spirv::dependsOn(module, instruction.at(1), loads) || dependsOnSample(store)) return;
-      if (graph_.program.samplesPerLaunch >= shared::kBatchSamples && !isStoredPerSample(store)) return;
+      if (program_.samplesPerLaunch >= shared::kBatchSamples && !isStoredPerSample(store)) return;
       if (!first) first = &store;
     }
     if (!first) return;
@@ -108,7 +109,7 @@ class OutputRule {
 
   // Q714: reported if a launch with several samples divides their sum by their number, as the film does.
   void checkMean(const program::Output& output, std::uint32_t slot) {
-    if (graph_.program.samplesPerLaunch == 1) return;
+    if (program_.samplesPerLaunch == 1) return;
     for (const Store& store : stores_) {
       const spirv::Module& module = store.stage->facts->module();
       const spirv::Instruction& instruction = module.instructions()[store.instruction];
@@ -216,8 +217,8 @@ class OutputRule {
   // The line of storeOutput(kOutput_NAME, …) in the user's file, since the library stores the value.
   SourceLocation storeLocation(const Store& store, const std::string& name) const {
     const spirv::Module& module = store.stage->facts->module();
-    for (const auto& [file, ignored] : graph_.program.files) {
-      const std::string path = graph_.program.path(file);
+    for (const auto& [file, ignored] : program_.files) {
+      const std::string path = program_.path(file);
       for (const auto& [source, text] : module.sources()) {
         if (!source.ends_with(path)) continue;
         constexpr std::string_view kStore = "storeOutput";
@@ -237,8 +238,9 @@ class OutputRule {
     return mainLocation(graph_, *store.stage);
   }
 
-  const CheckInput& input_;
+  const ProgramInput& input_;
   const PipelineGraph& graph_;
+  const program::Program& program_;
   Report& report_;
   std::vector<Store> stores_;
   bool unknown_ = false;  // a store can be to any output
@@ -246,6 +248,6 @@ class OutputRule {
 
 }  // namespace
 
-void checkOutputs(const CheckInput& input, Report& report) { OutputRule(input, report).check(); }
+void checkOutputs(const ProgramInput& input, Report& report) { OutputRule(input, report).check(); }
 
 }  // namespace quintet::check

@@ -90,7 +90,9 @@ class MemberRule {
     if (!hasSameType(edge)) return true;  // Q101
     const spirv::StageFacts& facts = graph_.facts(edge);
     const spirv::SharedVariable* payload = received(edge);
-    return payload && (always ? facts.writesAlways(payload->id, leaf) : facts.writes(payload->id, leaf));
+    // Which path runs can depend on a specialization constant with which the other stages agree.
+    const bool each = always && !facts.hasUnknownConstants();
+    return payload && (each ? facts.writesAlways(payload->id, leaf) : facts.writes(payload->id, leaf));
   }
 
   bool readsInput(const Edge& edge, std::uint32_t leaf) const {
@@ -105,16 +107,29 @@ class MemberRule {
     });
   }
 
+  // True if a shader of the role, or an any-hit shader before it, can write the leaf.
+  bool canWrite(std::uint32_t leaf, Role role) const {
+    return std::ranges::any_of(site_->edges, [&](const Edge& edge) {
+      const bool counts = edge.role == role || (role == Role::closestHit && edge.role == Role::anyHit);
+      return counts && writes(edge, leaf, false);
+    });
+  }
+
   // Calls `use` for each way in which the trace can end: with whether it is a miss, whether the leaf is written then
   // (0 never, 1 on some path, 2 always), and the shader or null. Stops if `use` returns false.
+  // If it is unknown which hit group or miss shader runs, and one of them can write the leaf, these ends are skipped.
   template <class Use>
   void forEachEnd(std::uint32_t leaf, const Use& use) const {
+    const bool skipHits = site_->assumesHits && canWrite(leaf, Role::closestHit);
+    const bool skipMisses = site_->assumesMisses && canWrite(leaf, Role::miss);
     for (const Edge& edge : site_->edges) {
       if (edge.role != Role::miss && edge.role != Role::closestHit) continue;
+      if (edge.role == Role::miss ? skipMisses : skipHits) continue;
       const bool byAnyHit = edge.role == Role::closestHit && anyHitWrites(edge.hit, leaf);
       const int written = writes(edge, leaf, true) || byAnyHit ? 2 : writes(edge, leaf, false) ? 1 : 0;
       if (!use(edge.role == Role::miss, written, &edge, edge.hit)) return;
     }
+    if (skipHits) return;
     for (const HitGroupRay hit : site_->hits) {
       const bool without = site_->skipsClosestHit() || graph_.shaders(hit).closestHit.empty();
       if (without && !use(false, anyHitWrites(hit, leaf) ? 2 : 0, nullptr, hit)) return;
@@ -136,7 +151,8 @@ class MemberRule {
         result.push_back("a hit (closest-hit shaders are skipped)"), skipped = true;
       return result.size() < kMaxNamed;
     });
-    if (graph_.program.hitGroups.empty()) result.push_back("a hit (the program has no hit groups)");
+    if (graph_.groups.hitGroups.empty() && graph_.groups.groupsKnown)
+      result.push_back(fmt::format("a hit (the {} has no hit groups)", graph_.groups.noun));
     if (result.size() > kMaxNamed) result.resize(kMaxNamed);
     return result;
   }
@@ -409,7 +425,8 @@ class MemberRule {
     for (const Edge& edge : site_->edges) {
       if (edge.role == Role::intersection || !received(edge)) continue;
       if (readsInput(edge, leaf)) return;  // input of the inner ray
-      if (!writer && writes(edge, leaf, false)) writer = &edge;
+      const bool assumed = edge.role == Role::miss ? site_->assumesMisses : site_->assumesHits;
+      if (!assumed && !writer && writes(edge, leaf, false)) writer = &edge;
     }
     // A value that a shader at the end of the trace keeps is a default, unless a condition on another member decides
     // whether it is read.

@@ -74,6 +74,9 @@ struct Wording {
   std::string_view site;  // "trace"
 };
 
+constexpr Wording kPayloads{"Q101", "Q102", "the payload of this trace", "trace"};
+constexpr Wording kCallableData{"Q301", "Q303", "the data of this call", "call"};
+
 // The declarations of both ends.
 std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineStage& sender, const Pair& pair) {
   const PipelineStage& receiver = graph.stages[pair.edge->stage];
@@ -99,15 +102,23 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
                              sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
                              receiver.module().types().describe(pair.received->type), *pair.difference),
                  endsOf(graph, graph.stages[site.stage], pair));
-    } else if (!pair.difference && pair.edge->exact && locationsDiffer(sender, pair)) {
-      report.add(
-          wording.locationId, graph.location(graph.stages[pair.edge->stage], pair.received->declaration),
-          fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
-                      *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
-          {relatedTo(location, fmt::format("the {}", wording.site)),
-           relatedTo(graph.declarationOf(graph.stages[site.stage], *pair.sent),
-                     fmt::format("location {} is sent", *pair.sent->location))});
     }
+  }
+}
+
+template <class Site>
+void checkLocations(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
+                    const Wording& wording, Report& report) {
+  for (const Pair& pair : pairsOf(graph, sites, incoming)) {
+    const Site& site = sites[pair.site];
+    const SourceLocation location = graph.location(site);
+    if (pair.difference || !pair.edge->exact || !locationsDiffer(graph.facts(site), pair)) continue;
+    report.add(wording.locationId, graph.location(graph.stages[pair.edge->stage], pair.received->declaration),
+               fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
+                           *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
+               {relatedTo(location, fmt::format("the {}", wording.site)),
+                relatedTo(graph.declarationOf(graph.stages[site.stage], *pair.sent),
+                          fmt::format("location {} is sent", *pair.sent->location))});
   }
 }
 
@@ -190,16 +201,19 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
 }  // namespace
 
 void checkPayloadTypes(const CheckInput& input, Report& report) {
-  checkPairs(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR,
-             {"Q101", "Q102", "the payload of this trace", "trace"}, report);
+  checkPairs(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR, kPayloads, report);
   checkQualifiers(input.graph, report);
   checkIncoming(input.graph, StorageClass::IncomingRayPayloadKHR, "rayPayloadInEXT", report);
   checkIncoming(input.graph, StorageClass::IncomingCallableDataKHR, "callableDataInEXT", report);
 }
 
 void checkCallableTypes(const CheckInput& input, Report& report) {
-  checkPairs(input.graph, input.graph.calls, StorageClass::IncomingCallableDataKHR,
-             {"Q301", "Q303", "the data of this call", "call"}, report);
+  checkPairs(input.graph, input.graph.calls, StorageClass::IncomingCallableDataKHR, kCallableData, report);
+}
+
+void checkSharedLocations(const ProgramInput& input, Report& report) {
+  checkLocations(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR, kPayloads, report);
+  checkLocations(input.graph, input.graph.calls, StorageClass::IncomingCallableDataKHR, kCallableData, report);
 }
 
 }  // namespace quintet::check

@@ -107,7 +107,8 @@ bool passesOn(const spirv::Module& module, const spirv::Instruction& i) {
 
 class RandomSeeds {
  public:
-  RandomSeeds(const CheckInput& input, Report& report) : graph_(input.graph), report_(report) {}
+  RandomSeeds(const ProgramInput& input, Report& report)
+      : graph_(input.graph), program_(input.program), report_(report) {}
 
   void check() {
     if (!graph_.error.empty() || !averages()) return;
@@ -120,10 +121,9 @@ class RandomSeeds {
  private:
   // True if the samples of a pixel are averaged: by the film, or by the program with the frame before.
   bool averages() const {
-    if (graph_.program.accumulation == program::Accumulation::film)
-      return std::ranges::any_of(graph_.program.outputs, [](const program::Output& output) {
-        return output.pixel == program::OutputPixel::mean;
-      });
+    if (program_.accumulation == program::Accumulation::film)
+      return std::ranges::any_of(
+          program_.outputs, [](const program::Output& output) { return output.pixel == program::OutputPixel::mean; });
     return std::ranges::any_of(graph_.stages, [](const PipelineStage& stage) {
       if (!stage.facts) return false;
       const spirv::Module& module = stage.facts->module();
@@ -196,7 +196,7 @@ class RandomSeeds {
     const spirv::Module& module = graph_.facts(site).module();
     SourceLocation location = site.trace->location;
     if (isLibrary(location)) location = userLocation(module, source).value_or(SourceLocation{});
-    const bool lecture = graph_.program.accumulation == program::Accumulation::program;
+    const bool lecture = program_.accumulation == program::Accumulation::program;
     report_.addOncePerLine(
         "Q718", graph_.location(graph_.stages[site.stage], location),
         std::string(
@@ -205,11 +205,12 @@ class RandomSeeds {
   }
 
   const PipelineGraph& graph_;
+  const program::Program& program_;
   Report& report_;
 };
 
 }  // namespace
 
-void checkRandomSeeds(const CheckInput& input, Report& report) { RandomSeeds(input, report).check(); }
+void checkRandomSeeds(const ProgramInput& input, Report& report) { RandomSeeds(input, report).check(); }
 
 }  // namespace quintet::check

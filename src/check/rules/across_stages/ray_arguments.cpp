@@ -30,7 +30,6 @@ class RayRule {
     checkMask(*site.trace);
     checkInterval(site);
     if (site.swapped.empty()) checkDirection(site);
-    checkStride(site);
     checkFirstHit(site);
     checkGeometry(site);
   }
@@ -83,10 +82,10 @@ class RayRule {
     const spirv::Id tmin = call.at(7), tmax = call.at(9);
     std::string text = invalid(facts.ranges().rangeAt(at, tmin), facts.ranges().rangeAt(at, tmax));
     if (text.empty()) {
-      const DefaultRanges& defaults = graph_.defaults(site.stage);
-      const std::string names = defaults.parameters({tmin, tmax});
+      const DefaultRanges* defaults = graph_.defaults(site.stage);
+      const std::string names = defaults ? defaults->parameters({tmin, tmax}) : "";
       if (names.empty()) return;
-      text = invalid(defaults.at(at, tmin), defaults.at(at, tmax));
+      text = invalid(defaults->at(at, tmin), defaults->at(at, tmax));
       if (!text.empty()) text += fmt::format(" (with the default of {})", names);
     }
     if (!text.empty()) report_.add("Q509", location_, text);
@@ -106,48 +105,11 @@ class RayRule {
       report_.add("Q510", location_, "the direction of this trace is (0, 0, 0)");
       return;
     }
-    const DefaultRanges& defaults = graph_.defaults(site.stage);
-    const std::string names = defaults.parameters({direction});
-    if (!names.empty() && isZero([&](std::uint32_t c) { return defaults.at(at, direction, {c}); }))
+    const DefaultRanges* defaults = graph_.defaults(site.stage);
+    const std::string names = defaults ? defaults->parameters({direction}) : "";
+    if (!names.empty() && isZero([&](std::uint32_t c) { return defaults->at(at, direction, {c}); }))
       report_.add("Q510", location_,
                   fmt::format("the direction of this trace is (0, 0, 0) with the default of {}", names));
-  }
-
-  // True if hits of the trace run different shaders or records in the two groups.
-  bool differ(const spirv::TraceFacts& trace, std::size_t a, std::size_t b) const {
-    if (a == b) return false;
-    for (const std::size_t ray : graph_.rayTypes(trace)) {
-      const program::HitShaders& first = graph_.shaders({a, ray});
-      const program::HitShaders& second = graph_.shaders({b, ray});
-      const bool closest =
-          !trace.flags.mustHave(kFlagSkipClosestHit) &&
-          (first.closestHit != second.closestHit || (!first.closestHit.empty() && first.record != second.record));
-      const bool any = !trace.flags.mustHave(kFlagOpaque) && first.anyHit != second.anyHit;
-      if (closest || any || first.intersection != second.intersection) return true;
-    }
-    return false;
-  }
-
-  // Q511
-  void checkStride(const TraceSite& site) {
-    const spirv::TraceFacts& trace = *site.trace;
-    if (!input_.scene || !trace.stride.exact() || trace.stride.values[0] != 0 || graph_.program.hitGroups.empty())
-      return;
-    const auto& geometries = input_.scene->geometries;
-    for (const program::InstanceFacts& instance : input_.scene->instances) {
-      if (!trace.mask.mayHave(instance.mask & kMaskBits)) continue;
-      for (std::uint32_t k = 1; k < instance.geometryCount && instance.firstGeometry + k < geometries.size(); ++k) {
-        const std::size_t used = program::hitGroupFor(graph_.program, geometries[instance.firstGeometry]);
-        const std::size_t needed = program::hitGroupFor(graph_.program, geometries[instance.firstGeometry + k]);
-        if (!differ(trace, used, needed)) continue;
-        report_.add("Q511", location_,
-                    fmt::format("the stride of this trace is 0, so geometry {} of instance '{}' uses hit group '{}' of "
-                                "geometry 0 instead of '{}'; the stride must be {} (kRayTypeCount)",
-                                k, instance.name, graph_.program.hitGroups[used].name,
-                                graph_.program.hitGroups[needed].name, graph_.rayCount()));
-        return;
-      }
-    }
   }
 
   // True if the value depends on which hit is found.
@@ -220,18 +182,22 @@ class RayRule {
     const bool noTriangles = flags.mustHave(kFlagSkipTriangles), noBoxes = flags.mustHave(kFlagSkipAabbs);
     if (noTriangles && noBoxes) return;  // Q605
     if (input_.scene) return checkSceneGeometry(*site.trace);
-    const auto& groups = graph_.program.hitGroups;
-    if (groups.empty() || (!noTriangles && !noBoxes)) return;
+    const auto& groups = graph_.groups.hitGroups;
+    if (groups.empty() || !graph_.groups.groupsKnown || (!noTriangles && !noBoxes)) return;
     std::size_t procedural = 0;
     for (std::size_t i = 0; i < groups.size(); ++i) procedural += graph_.hasIntersection(i) ? 1 : 0;
     if (noTriangles && procedural == 0)
-      report_.add("Q513", location_,
-                  "this trace skips triangles (gl_RayFlagsSkipTrianglesEXT), but no hit group of the program has an "
-                  "intersection shader, so it hits nothing");
+      report_.add(
+          "Q513", location_,
+          fmt::format("this trace skips triangles (gl_RayFlagsSkipTrianglesEXT), but no hit group of the {} has an "
+                      "intersection shader, so it hits nothing",
+                      graph_.groups.noun));
     if (noBoxes && procedural == groups.size())
-      report_.add("Q513", location_,
-                  "this trace skips procedural geometry (gl_RayFlagsSkipAABBEXT), but all hit groups of the program "
-                  "have intersection shaders, so it hits nothing");
+      report_.add(
+          "Q513", location_,
+          fmt::format("this trace skips procedural geometry (gl_RayFlagsSkipAABBEXT), but all hit groups of the {} "
+                      "have intersection shaders, so it hits nothing",
+                      graph_.groups.noun));
   }
 
   void checkSceneGeometry(const spirv::TraceFacts& trace) {
@@ -271,10 +237,68 @@ class RayRule {
   SourceLocation location_;  // of the trace
 };
 
+class StrideRule {
+ public:
+  StrideRule(const ProgramInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {}
+
+  void check(const TraceSite& site) {
+    location_ = graph_.location(site);
+    checkStride(site);
+  }
+
+ private:
+  // True if hits of the trace run different shaders or records in the two groups.
+  bool differ(const spirv::TraceFacts& trace, std::size_t a, std::size_t b) const {
+    if (a == b) return false;
+    for (const std::size_t ray : graph_.rayTypes(trace)) {
+      const program::HitShaders& first = graph_.shaders({a, ray});
+      const program::HitShaders& second = graph_.shaders({b, ray});
+      const bool closest =
+          !trace.flags.mustHave(kFlagSkipClosestHit) &&
+          (first.closestHit != second.closestHit || (!first.closestHit.empty() && first.record != second.record));
+      const bool any = !trace.flags.mustHave(kFlagOpaque) && first.anyHit != second.anyHit;
+      if (closest || any || first.intersection != second.intersection) return true;
+    }
+    return false;
+  }
+
+  // Q511
+  void checkStride(const TraceSite& site) {
+    const spirv::TraceFacts& trace = *site.trace;
+    if (!input_.scene || !trace.stride.exact() || trace.stride.values[0] != 0 || graph_.groups.hitGroups.empty())
+      return;
+    const auto& geometries = input_.scene->geometries;
+    for (const program::InstanceFacts& instance : input_.scene->instances) {
+      if (!trace.mask.mayHave(instance.mask & kMaskBits)) continue;
+      for (std::uint32_t k = 1; k < instance.geometryCount && instance.firstGeometry + k < geometries.size(); ++k) {
+        const std::size_t used = program::hitGroupFor(input_.program, geometries[instance.firstGeometry]);
+        const std::size_t needed = program::hitGroupFor(input_.program, geometries[instance.firstGeometry + k]);
+        if (!differ(trace, used, needed)) continue;
+        report_.add("Q511", location_,
+                    fmt::format("the stride of this trace is 0, so geometry {} of instance '{}' uses hit group '{}' of "
+                                "geometry 0 instead of '{}'; the stride must be {} (kRayTypeCount)",
+                                k, instance.name, graph_.groups.hitGroups[used].name,
+                                graph_.groups.hitGroups[needed].name, graph_.rayCount()));
+        return;
+      }
+    }
+  }
+
+  const ProgramInput& input_;
+  const PipelineGraph& graph_;
+  Report& report_;
+  SourceLocation location_;  // of the trace
+};
+
 }  // namespace
 
 void checkRayArguments(const CheckInput& input, Report& report) {
   RayRule rule(input, report);
+  for (const TraceSite& site : input.graph.traces) rule.check(site);
+}
+
+void checkStrides(const ProgramInput& input, Report& report) {
+  StrideRule rule(input, report);
   for (const TraceSite& site : input.graph.traces) rule.check(site);
 }
 

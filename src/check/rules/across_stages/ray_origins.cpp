@@ -156,12 +156,12 @@ struct PayloadOrigin {
   std::uint32_t member = 0;  // 0 for a payload that is not a structure
 };
 
-std::vector<PayloadOrigin> payloadOrigins(const spirv::StageFacts& facts, const DefaultRanges& defaults) {
+std::vector<PayloadOrigin> payloadOrigins(const spirv::StageFacts& facts, const DefaultRanges* defaults) {
   const spirv::Module& module = facts.module();
   std::vector<PayloadOrigin> result;
   for (std::size_t i = 0; i < module.instructions().size(); ++i) {
     const spirv::Instruction& trace = module.instructions()[i];
-    const std::string zero = trace.op == Op::OpTraceRayKHR ? zeroText(facts.ranges(), &defaults, module, i) : "";
+    const std::string zero = trace.op == Op::OpTraceRayKHR ? zeroText(facts.ranges(), defaults, module, i) : "";
     if (zero.empty()) continue;
     const auto isMember = [&](const spirv::Instruction& value) {
       return value.op == Op::OpLoad && storedIn(module, value.at(0), spv::StorageClass::RayPayloadKHR);
@@ -260,7 +260,7 @@ void checkRayOrigins(const CheckInput& input, Report& report) {
     Report ofStage;
     const spirv::StageFacts& facts = *graph.stages[i].facts;
     if (facts.traces().empty()) return;
-    checkOrigins(facts.module(), facts.ranges(), &graph.defaults(i), ofStage);
+    checkOrigins(facts.module(), facts.ranges(), graph.defaults(i), ofStage);
     found[i] = ofStage.take();
   });
   dropZeroAttributes(graph, found);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "check/rules/rules.h"
 
@@ -20,7 +21,7 @@ class TraceChains {
         steps_(graph.stages.size()),
         bytes_(graph.stages.size(), 0) {
     for (std::size_t i = 0; i < graph.stages.size(); ++i)
-      if (graph.stages[i].kind == shader::Stage::rayGeneration) visit(i);
+      if (graph.stages[i].kind == shader::Stage::rayGeneration && graph.stages[i].facts) visit(i);
   }
 
   struct Cycle {
@@ -38,12 +39,20 @@ class TraceChains {
     std::vector<std::string> names;
     std::size_t last = stage;
     for (const Step& step : longestChain(stage)) {
-      names.push_back(
-          fmt::format("{}:{}", graph_.nameOf(graph_.stages[step.site->stage].file), step.site->trace->location.line));
+      const int line = step.site->trace->location.line;
+      names.push_back(graph_.nameOf(graph_.stages[step.site->stage].file) + (line > 0 ? fmt::format(":{}", line) : ""));
       last = step.next;
     }
     names.push_back(graph_.nameOf(graph_.stages[last].file));
     return fmt::format("{}", fmt::join(names, " -> "));
+  }
+
+  // The stages of the longest chain.
+  std::vector<std::size_t> stages(std::size_t stage) const {
+    std::vector<std::size_t> result{stage};
+    for (const Step& step : longestChain(stage))
+      if (step.next != result.back()) result.push_back(step.next);
+    return result;
   }
 
   // The outer traces of the longest chain, without the innermost one.
@@ -89,6 +98,10 @@ class TraceChains {
       for (const Edge& edge : site.edges) {
         below = std::max(below, bytesOf(edge));
         if (!traces(edge.role)) continue;
+        if (edge.role == Role::miss ? site.assumesMisses : site.assumesHits) {
+          if (state_[edge.stage] == 0) visit(edge.stage);
+          continue;
+        }
         if (state_[edge.stage] == 1) {
           const auto start = std::ranges::find(path_, edge.stage);
           cycles_.push_back({&site, {start, path_.end()}, &edge});
@@ -100,6 +113,8 @@ class TraceChains {
         if (step.next == stage || 1 + depth_[edge.stage] > depth) step.next = edge.stage;
         depth = std::max(depth, 1 + depth_[edge.stage]);
       }
+      addAssumed(site, Role::closestHit, depth, step);
+      addAssumed(site, Role::miss, depth, step);
       if (depth > depth_[stage]) depth_[stage] = depth, steps_[stage] = step;
     }
     for (const CallSite& site : graph_.calls)
@@ -108,6 +123,23 @@ class TraceChains {
     bytes_[stage] = graph_.stages[stage].facts->frameBytes() + below;
     path_.pop_back();
     state_[stage] = 2;
+  }
+
+  // If it is unknown which of the shaders runs, the chain has at least the length of the shortest one.
+  void addAssumed(const TraceSite& site, Role role, std::uint32_t& depth, Step& step) const {
+    if (role == Role::miss ? !site.assumesMisses : !site.assumesHits) return;
+    const auto is = [&](const Edge& edge) { return edge.role == role; };
+    const auto count = std::ranges::count_if(site.edges, is);
+    const std::size_t all = role == Role::miss ? graph_.groups.misses.size() : site.hits.size();
+    if (count == 0 || static_cast<std::size_t>(count) < all) return;  // a hit without a closest-hit shader
+    const Edge* shortest = nullptr;
+    for (const Edge& edge : site.edges) {
+      if (!is(edge)) continue;
+      if (state_[edge.stage] == 1) return;
+      if (!shortest || depth_[edge.stage] < depth_[shortest->stage]) shortest = &edge;
+    }
+    if (step.next == site.stage || 1 + depth_[shortest->stage] > depth) step.next = shortest->stage;
+    depth = std::max(depth, 1 + depth_[shortest->stage]);
   }
 
   std::uint64_t bytesOf(const Edge& edge) const { return graph_.facts(edge).frameBytes(); }
@@ -189,31 +221,46 @@ class CallChains {
 
 }  // namespace
 
+// The ray generation shader with the longest chain of traces.
+std::optional<std::size_t> deepestStart(const PipelineGraph& graph, const TraceChains& chains) {
+  std::optional<std::size_t> deepest;
+  for (const std::string& file : graph.groups.rayGenerations) {
+    const PipelineStage* start = graph.stage(file);
+    if (!start || !start->facts) continue;
+    const auto stage = static_cast<std::size_t>(start - graph.stages.data());
+    if (!deepest || chains.depth(stage) > chains.depth(*deepest)) deepest = stage;
+  }
+  return deepest;
+}
+
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
-  const auto& declared = graph.program.declaredRecursion;
+  const auto& declared = graph.groups.declaredRecursion;
   RecursionNeeds needs{declared.value_or(1), 0, false};
-  const PipelineStage* start = graph.stage(graph.program.rayGeneration);
-  if (!start || !start->facts) return needs;
   const TraceChains chains(graph);
   const CallChains calls(graph, report);
-  const auto stage = static_cast<std::size_t>(start - graph.stages.data());
+  const std::optional<std::size_t> start = deepestStart(graph, chains);
+  if (!start) return needs;
+  const std::size_t stage = *start;
   const std::uint32_t derived = std::max(1u, chains.depth(stage));
   const bool cyclic = needs.cyclic = !chains.cycles().empty();
   needs.depth = derived;
   needs.stackBytes = chains.bytes(stage);
+  needs.chain = chains.stages(stage);
   if (cyclic) {
     needs.depth = std::max(derived, declared.value_or(input.limits.maxRecursion));
     needs.stackBytes += (needs.depth - derived) * chains.bytes(chains.cycles().front().stages.front());
   }
-  if (!declared)
+  // A pipeline always declares a bound; a description of raw modules that has none does not say it.
+  if (!declared && graph.usesLibrary)
     for (const TraceChains::Cycle& cycle : chains.cycles())
-      report.add("Q401", graph.location(*cycle.site), cycleText(graph, cycle) + "; the program declares no bound",
+      report.add("Q401", graph.location(*cycle.site),
+                 cycleText(graph, cycle) + fmt::format("; the {} declares no bound", graph.groups.noun),
                  otherTraces(graph, cycle));
   if (declared && *declared < derived)
     report.add("Q402", chains.lastTrace(stage),
-               fmt::format("traces are nested {} deep ({}), but the program declares {}", derived, chains.chain(stage),
-                           *declared),
+               fmt::format("traces are nested {} deep ({}), but the {} declares {}", derived, chains.chain(stage),
+                           graph.groups.noun, *declared),
                chains.outerTraces(stage));
   if ((!cyclic || declared) && needs.depth > input.limits.maxRecursion)
     report.add(

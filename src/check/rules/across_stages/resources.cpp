@@ -195,8 +195,8 @@ std::string descriptorName(const spirv::Module& module, Id id, StorageClass stor
 
 class ResourceRule {
  public:
-  ResourceRule(const CheckInput& input, const PipelineStage& stage, Report& report)
-      : graph_(input.graph), stage_(stage), module_(stage.facts->module()), report_(report) {}
+  ResourceRule(const ProgramInput& input, const PipelineStage& stage, Report& report)
+      : graph_(input.graph), program_(input.program), stage_(stage), module_(stage.facts->module()), report_(report) {}
 
   void check() {
     for (const spirv::Variable& variable : module_.variables()) {
@@ -259,11 +259,11 @@ class ResourceRule {
   }
 
   void checkRecord(const spirv::Variable& variable) {
-    const std::vector<Leaf> fields = recordFields(graph_.program);
+    const std::vector<Leaf> fields = recordFields(program_);
     if (fields.empty()) {
       report_.add("Q654", location(variable),
                   fmt::format("this stage reads the shader record, but {} declares no [[record]] fields",
-                              graph_.program.descriptionFile));
+                              program_.descriptionFile));
       return;
     }
     std::vector<Leaf> leaves;
@@ -295,12 +295,13 @@ class ResourceRule {
     };
     for (const auto& [file, text] : module_.sources())
       if (const auto found = findIn(file, text)) return *found;
-    for (const auto& [file, text] : graph_.program.files)
-      if (const auto found = findIn(graph_.program.path(file), text)) return *found;
+    for (const auto& [file, text] : program_.files)
+      if (const auto found = findIn(program_.path(file), text)) return *found;
     return graph_.location(stage_, {});
   }
 
   const PipelineGraph& graph_;
+  const program::Program& program_;
   const PipelineStage& stage_;
   const spirv::Module& module_;
   Report& report_;
@@ -308,7 +309,7 @@ class ResourceRule {
 
 }  // namespace
 
-void checkResources(const CheckInput& input, Report& report) {
+void checkResources(const ProgramInput& input, Report& report) {
   for (const PipelineStage& stage : input.graph.stages)
     if (stage.facts) ResourceRule(input, stage, report).check();
 }

@@ -65,8 +65,18 @@ bool hasEffects(const spirv::StageFacts& facts) {
 }
 
 SourceLocation mainLocation(const PipelineGraph& graph, const PipelineStage& stage) {
+  if (stage.facts && !graph.usesLibrary) {
+    const spirv::Module& module = stage.facts->module();
+    const spirv::Function* entry = module.entry();
+    const SourceLocation declared = entry ? module.declaration(entry->id) : SourceLocation{};
+    if (declared.line > 0) return declared;
+    for (const auto& [file, text] : module.sources())
+      if (const auto found = spirv::findWord(text, "main"))
+        return {found->file.empty() ? file : found->file, found->line, found->column};
+    return graph.location(stage, {});
+  }
   if (stage.facts) {
-    const std::string own = graph.program.path(stage.file);
+    const std::string own = graph.groups.path(stage.file);
     for (const auto& [file, text] : stage.facts->module().sources()) {
       const auto found = spirv::findWord(text, "main");
       if (!found) continue;

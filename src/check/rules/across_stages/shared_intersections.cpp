@@ -9,13 +9,13 @@
 
 namespace quintet::check {
 
-void checkSharedIntersections(const CheckInput& input, Report& report) {
+void checkSharedIntersections(const ProgramInput& input, Report& report) {
   struct Use {
     const program::HitGroup* group;
     const program::HitShaders* shaders;
   };
   std::map<std::string, Use> firstUses;
-  for (const program::HitGroup& group : input.graph.program.hitGroups) {
+  for (const program::HitGroup& group : input.program.hitGroups) {
     for (const auto& [ray, shaders] : group.shaders) {
       if (shaders.intersection.empty() || shaders.anyHit.empty() || program::isLibraryStage(shaders.intersection))
         continue;

@@ -252,9 +252,8 @@ void checkSpaces(const spirv::Module& module, Report& report) {
   checkSpaces(spaces, 0, spaces.transforms(), report);
 }
 
-void checkSpaces(const CheckInput& input, Report& report) {
+void checkSpaces(const CheckInput& input, const PipelineSpaces& spaces, Report& report) {
   const PipelineGraph& graph = input.graph;
-  const PipelineSpaces spaces(graph);
   const bool transformed =
       spaces.transforms() ||
       (input.scene && std::ranges::any_of(input.scene->instances, &program::InstanceFacts::transformed));
@@ -268,7 +267,6 @@ void checkSpaces(const CheckInput& input, Report& report) {
   for (std::size_t i = 0; i < found.size(); ++i)
     for (Diagnostic& d : found[i])
       report.addOncePerLine(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text));
-  checkColorEncoding(graph, spaces, report);
 }
 
 }  // namespace quintet::check

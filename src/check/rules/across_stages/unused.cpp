@@ -12,17 +12,17 @@
 namespace quintet::check {
 namespace {
 
-// Returns the line of the first mention of a file in the program description.
-int lineOfFile(const program::Program& program, const std::string& file) {
-  for (const program::MissShader& miss : program::missShaders(program))
+// Returns the line of the first mention of a file in the description of the groups; 0 if unknown.
+int lineOfFile(const PipelineGroups& groups, const std::string& file) {
+  for (const program::MissShader& miss : groups.misses)
     if (miss.file == file) return miss.line;
-  for (const program::Callable& callable : program.callables)
+  for (const program::Callable& callable : groups.callables)
     if (callable.file == file) return callable.line;
-  for (const program::HitGroup& group : program.hitGroups)
+  for (const program::HitGroup& group : groups.hitGroups)
     for (const auto& [ray, shaders] : group.shaders)
       if (shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file)
         return shaders.line > 0 ? shaders.line : group.line;
-  return program.rayGenerationLine;
+  return 0;  // ray generation is always reachable
 }
 
 bool isBound(const program::HitGroup& group) {
@@ -42,8 +42,8 @@ std::string missingName(const program::Program& program, std::size_t group, cons
 
 // True if geometry that matches `group` uses `earlier`, which comes before it.
 bool isHiddenBy(const PipelineGraph& graph, std::size_t group, std::size_t earlier) {
-  const program::HitGroup& a = graph.program.hitGroups[earlier];
-  const program::HitGroup& b = graph.program.hitGroups[group];
+  const program::HitGroup& a = graph.groups.hitGroups[earlier];
+  const program::HitGroup& b = graph.groups.hitGroups[group];
   if (a.geometry != b.geometry || a.material != b.material || a.primitives != b.primitives) return false;
   // Groups that are bound by material only are not compared.
   if (isBound(b) && b.geometry.empty() && b.primitives.empty()) return false;
@@ -51,8 +51,8 @@ bool isHiddenBy(const PipelineGraph& graph, std::size_t group, std::size_t earli
 }
 
 // Returns why no geometry uses the hit group; empty if some can.
-std::string reasonUnused(const CheckInput& input, std::size_t index) {
-  const program::Program& program = input.graph.program;
+std::string reasonUnused(const ProgramInput& input, std::size_t index) {
+  const program::Program& program = input.program;
   const program::HitGroup& group = program.hitGroups[index];
   for (std::size_t earlier = 0; earlier < index; ++earlier)
     if (isHiddenBy(input.graph, index, earlier))
@@ -78,7 +78,7 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
     if (reachable.contains(i) || std::ranges::any_of(reachable, isReached) ||
         stage.file.ends_with(program::kStubMissExtension))
       continue;
-    const int line = lineOfFile(graph.program, stage.file);
+    const int line = lineOfFile(graph.groups, stage.file);
     // The description has no lines in the lecture form, where both variants of a stage can be unreachable.
     report.addOncePerLine("Q801", line > 0 ? graph.descriptionLocation(line) : mainLocation(graph, stage),
                           fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind),
@@ -86,8 +86,8 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
   }
 }
 
-void checkUnusedHitGroups(const CheckInput& input, Report& report) {
-  const std::vector<program::HitGroup>& groups = input.graph.program.hitGroups;
+void checkUnusedHitGroups(const ProgramInput& input, Report& report) {
+  const std::vector<program::HitGroup>& groups = input.program.hitGroups;
   for (std::size_t i = 0; i < groups.size(); ++i)
     if (const std::string reason = reasonUnused(input, i); !reason.empty())
       report.add("Q802", input.graph.descriptionLocation(groups[i].line),

@@ -364,13 +364,13 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
 }
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
-bool isSizeOf(const spirv::Module& module, Id value, const Path& path, const Coordinate& coordinate) {
+bool isSizeOf(const spirv::Module& module, Id value, const Path& path, const Coordinate& coordinate, bool library) {
   const spirv::ValuePart size = withoutConversions(module, {value, path});
   const spirv::Instruction* i = module.definition(size.id);
   if (!i || i->op != Op::OpLoad) return false;
   if (!coordinate.ofImage && componentOf(module, *i, size.path, spv::BuiltIn::LaunchSizeKHR) == coordinate.axis)
     return true;
-  return isMember(module, *i, size.path, "Frame", coordinate.axis == 0 ? "width" : "height");
+  return library && isMember(module, *i, size.path, "Frame", coordinate.axis == 0 ? "width" : "height");
 }
 
 }  // namespace
@@ -381,7 +381,7 @@ void checkPixels(const spirv::Module& module, Report& report) {
     if (const auto target = targetOf(module, module.instructions()[k])) checkTarget(module, ranges, k, *target, report);
 }
 
-void checkPixelDivision(const spirv::Module& module, Report& report) {
+void checkPixelDivision(const spirv::Module& module, bool library, Report& report) {
   for (const spirv::Instruction& i : module.instructions()) {
     if (i.op != Op::OpUDiv && i.op != Op::OpSDiv) continue;
     const spirv::Type& type = module.types().get(i.type);
@@ -389,7 +389,7 @@ void checkPixelDivision(const spirv::Module& module, Report& report) {
     for (std::uint32_t c = 0; c < std::max(1u, count); ++c) {
       const Path path = count > 0 ? Path{c} : Path{};
       const auto coordinate = coordinateOf(module, i.at(0), path);
-      if (!coordinate || !isSizeOf(module, i.at(1), path, *coordinate)) continue;
+      if (!coordinate || !isSizeOf(module, i.at(1), path, *coordinate, library)) continue;
       report.addOncePerLine("Q716", locationAt(module, i, "gl_LaunchIDEXT"),
                             fmt::format("this integer division of gl_LaunchIDEXT.{} by the size is always 0; convert "
                                         "both to float first",

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device.h"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "check/modules/stack_check.h"
+#include "check/suppression.h"
+#include "spirv/shader_record.h"
+
+namespace quintet::layer {
+namespace {
+
+// The first structure of a type in a chain; null if there is none.
+template <class Info>
+const Info* findInChain(const void* chain, VkStructureType type) {
+  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext)
+    if (entry->sType == type) return reinterpret_cast<const Info*>(entry);
+  return nullptr;
+}
+
+Words wordsOf(const VkShaderModuleCreateInfo& info) {
+  if (!info.pCode) return nullptr;
+  return std::make_shared<const std::vector<std::uint32_t>>(info.pCode, info.pCode + info.codeSize / 4);
+}
+
+shader::SpecializationValues valuesOf(const VkSpecializationInfo* info) {
+  shader::SpecializationValues values;
+  if (!info || !info->pData) return values;
+  for (std::uint32_t i = 0; i < info->mapEntryCount; ++i) {
+    const VkSpecializationMapEntry& entry = info->pMapEntries[i];
+    if (entry.offset > info->dataSize || entry.size > info->dataSize - entry.offset || entry.size > 8) continue;
+    std::vector<std::uint32_t> words(entry.size > 4 ? 2 : 1);
+    std::memcpy(words.data(), static_cast<const std::byte*>(info->pData) + entry.offset, entry.size);
+    values[entry.constantID] = std::move(words);
+  }
+  return values;
+}
+
+spv::ExecutionModel modelOf(VkShaderStageFlagBits stage) {
+  using Model = spv::ExecutionModel;
+  switch (stage) {
+    case VK_SHADER_STAGE_RAYGEN_BIT_KHR: return Model::RayGenerationKHR;
+    case VK_SHADER_STAGE_MISS_BIT_KHR: return Model::MissKHR;
+    case VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR: return Model::ClosestHitKHR;
+    case VK_SHADER_STAGE_ANY_HIT_BIT_KHR: return Model::AnyHitKHR;
+    case VK_SHADER_STAGE_INTERSECTION_BIT_KHR: return Model::IntersectionKHR;
+    default: return Model::CallableKHR;
+  }
+}
+
+std::optional<std::size_t> indexOf(std::uint32_t stage, std::size_t first, std::size_t count) {
+  return stage == VK_SHADER_UNUSED_KHR || stage >= count ? std::nullopt : std::optional(first + stage);
+}
+
+}  // namespace
+
+Device::Device(VkDevice device, VkPhysicalDevice physical, PFN_vkGetDeviceProcAddr nextLayer,
+               std::shared_ptr<Instance> owner)
+    : handle(device), next(nextLayer), instance(std::move(owner)) {
+#define QUINTET_LOAD(name) table.name = reinterpret_cast<PFN_vk##name>(next(handle, "vk" #name));
+  QUINTET_DEVICE_FUNCTIONS(QUINTET_LOAD)
+#undef QUINTET_LOAD
+  if (!table.QueueSubmit2) table.QueueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(next(handle, "vkQueueSubmit2KHR"));
+  if (!table.GetBufferDeviceAddress)
+    table.GetBufferDeviceAddress =
+        reinterpret_cast<PFN_vkGetBufferDeviceAddress>(next(handle, "vkGetBufferDeviceAddressKHR"));
+  VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays{};
+  rays.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &rays;
+  if (instance->table.GetPhysicalDeviceProperties2) instance->table.GetPhysicalDeviceProperties2(physical, &properties);
+  if (instance->table.GetPhysicalDeviceMemoryProperties)
+    instance->table.GetPhysicalDeviceMemoryProperties(physical, &memory);
+  if (rays.shaderGroupHandleSize == 0) return;
+  tableLimits = {rays.shaderGroupHandleSize, rays.shaderGroupHandleAlignment, rays.shaderGroupBaseAlignment,
+                 rays.maxShaderGroupStride};
+  limits.name = properties.properties.deviceName;
+  limits.maxRecursion = rays.maxRayRecursionDepth;
+  limits.maxHitAttributeBytes = rays.maxRayHitAttributeSize;
+}
+
+Device::~Device() { instance->worker.waitForAll(); }
+
+void Device::addModule(VkShaderModule module, const VkShaderModuleCreateInfo& info) {
+  Words words = wordsOf(info);
+  const std::scoped_lock lock(mutex_);
+  modules_[module] = std::move(words);
+}
+
+void Device::removeModule(VkShaderModule module) {
+  const std::scoped_lock lock(mutex_);
+  modules_.erase(module);
+  names_.erase({VK_OBJECT_TYPE_SHADER_MODULE, numberOf(module)});
+}
+
+void Device::setName(VkObjectType type, std::uint64_t object, const char* name) {
+  if (type != VK_OBJECT_TYPE_PIPELINE && type != VK_OBJECT_TYPE_SHADER_MODULE) return;
+  const std::scoped_lock lock(mutex_);
+  if (name && *name)
+    names_[{type, object}] = name;
+  else
+    names_.erase({type, object});
+}
+
+std::string Device::nameOf(VkObjectType type, std::uint64_t object) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = names_.find({type, object});
+  return found == names_.end() ? std::string() : found->second;
+}
+
+std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPipelineCreateInfoKHR* infos) {
+  std::vector<PipelineCopy> copies(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const VkRayTracingPipelineCreateInfoKHR& info = infos[i];
+    PipelineCopy& copy = copies[i];
+    copy.depth = info.maxPipelineRayRecursionDepth;
+    copy.isLibrary = (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
+    const std::scoped_lock lock(mutex_);
+    for (std::uint32_t s = 0; s < info.stageCount; ++s) {
+      const VkPipelineShaderStageCreateInfo& stage = info.pStages[s];
+      StageCopy added{nullptr, {}, stage.stage, stage.pName ? stage.pName : "main", valuesOf(stage.pSpecializationInfo)};
+      if (const auto found = modules_.find(stage.module); found != modules_.end()) {
+        added.words = found->second;
+        const auto name = names_.find({VK_OBJECT_TYPE_SHADER_MODULE, numberOf(stage.module)});
+        if (name != names_.end()) added.name = name->second;
+      } else if (const auto* module = findInChain<VkShaderModuleCreateInfo>(
+                     stage.pNext, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
+        added.words = wordsOf(*module);
+      }
+      copy.stages.push_back(std::move(added));
+    }
+    for (std::uint32_t g = 0; g < info.groupCount; ++g) {
+      const VkRayTracingShaderGroupCreateInfoKHR& group = info.pGroups[g];
+      const auto index = [&](std::uint32_t stage) { return indexOf(stage, 0, info.stageCount); };
+      if (group.type == VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR)
+        copy.groups.push_back({group.type, index(group.generalShader), {}, {}, {}});
+      else
+        copy.groups.push_back({group.type, {}, index(group.closestHitShader), index(group.anyHitShader),
+                               index(group.intersectionShader)});
+    }
+    // The groups of libraries follow, in the order of the libraries.
+    for (std::uint32_t l = 0; info.pLibraryInfo && l < info.pLibraryInfo->libraryCount; ++l) {
+      const auto library = pipelines_.find(info.pLibraryInfo->pLibraries[l]);
+      if (library == pipelines_.end()) continue;
+      const PipelineCopy& from = library->second->copy;
+      const std::size_t first = copy.stages.size();
+      copy.stages.insert(copy.stages.end(), from.stages.begin(), from.stages.end());
+      for (GroupCopy group : from.groups) {
+        for (auto* stage : {&group.general, &group.closestHit, &group.anyHit, &group.intersection})
+          if (*stage) **stage += first;
+        copy.groups.push_back(group);
+      }
+    }
+  }
+  return copies;
+}
+
+void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pipelines) {
+  std::vector<std::shared_ptr<LinkedPipeline>> added;
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    if (pipelines[i] == VK_NULL_HANDLE) continue;
+    auto pipeline = std::make_shared<LinkedPipeline>();
+    pipeline->copy = std::move(copies[i]);
+    pipeline->handle = pipelines[i];
+    if (!pipeline->copy.isLibrary)
+      pipeline->task = instance->worker.add([this, pipeline] {
+        try {
+          link(*pipeline);
+        } catch (const std::exception& error) {  // of the host, such as std::bad_alloc
+          Diagnostic d;
+          d.severity = Severity::note;
+          d.text = fmt::format("the pipeline is not checked: {}", error.what());
+          pipeline->result.diagnostics = {d};
+        }
+      });
+    const std::scoped_lock lock(mutex_);
+    pipelines_[pipelines[i]] = pipeline;
+    if (pipeline->task) undelivered_ = true;
+    added.push_back(std::move(pipeline));
+  }
+  if (instance->settings.wait)
+    for (const auto& pipeline : added) deliver(*pipeline);
+}
+
+void Device::defer(VkDeferredOperationKHR operation, std::vector<PipelineCopy> copies, const VkPipeline* pipelines) {
+  const std::scoped_lock lock(mutex_);
+  deferred_[operation] = {std::move(copies), pipelines};
+}
+
+void Device::completeDeferred(VkDeferredOperationKHR operation) {
+  Deferred deferred;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = deferred_.find(operation);
+    if (found == deferred_.end()) return;
+    deferred = std::move(found->second);
+    deferred_.erase(found);
+  }
+  addPipelines(std::move(deferred.copies), deferred.pipelines);
+}
+
+void Device::cancelDeferred(VkDeferredOperationKHR operation) {
+  const std::scoped_lock lock(mutex_);
+  deferred_.erase(operation);
+}
+
+void Device::removePipeline(VkPipeline object) {
+  if (const auto removed = pipeline(object)) deliver(*removed);
+  const std::scoped_lock lock(mutex_);
+  pipelines_.erase(object);
+  names_.erase({VK_OBJECT_TYPE_PIPELINE, numberOf(object)});
+}
+
+std::shared_ptr<LinkedPipeline> Device::pipeline(VkPipeline object) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = pipelines_.find(object);
+  return found == pipelines_.end() ? nullptr : found->second;
+}
+
+void Device::bind(VkCommandBuffer commands, VkPipeline object) {
+  const std::shared_ptr<LinkedPipeline> bound = pipeline(object);
+  if (!bound) return;
+  deliver(*bound);
+  const std::scoped_lock lock(mutex_);
+  bound_[commands] = bound;
+}
+
+std::shared_ptr<LinkedPipeline> Device::boundPipeline(VkCommandBuffer commands) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = bound_.find(commands);
+  return found == bound_.end() ? nullptr : found->second;
+}
+
+void Device::forgetCommands(VkCommandBuffer commands) {
+  const std::scoped_lock lock(mutex_);
+  bound_.erase(commands);
+}
+
+void Device::deliver(LinkedPipeline& pipeline) {
+  if (!pipeline.task) return;
+  instance->worker.wait(*pipeline.task);
+  {
+    const std::scoped_lock lock(pipeline.mutex);
+    if (pipeline.delivered) return;
+    pipeline.delivered = true;
+  }
+  report(pipeline.result.diagnostics, pipeline);
+}
+
+void Device::deliverFinished() {
+  if (!undelivered_) return;
+  std::vector<std::shared_ptr<LinkedPipeline>> finished;
+  {
+    const std::scoped_lock lock(mutex_);
+    bool open = false;
+    for (const auto& [object, pipeline] : pipelines_) {
+      if (!pipeline->task) continue;
+      const std::scoped_lock ofPipeline(pipeline->mutex);
+      if (pipeline->delivered) continue;
+      if (instance->worker.isDone(*pipeline->task))
+        finished.push_back(pipeline);
+      else
+        open = true;
+    }
+    undelivered_ = open;
+  }
+  for (const auto& pipeline : finished) deliver(*pipeline);
+}
+
+void Device::deliverAll() {
+  instance->worker.waitForAll();
+  deliverFinished();
+}
+
+void Device::report(std::vector<Diagnostic> diagnostics, LinkedPipeline& pipeline) {
+  const MessageObject object{VK_OBJECT_TYPE_PIPELINE, numberOf(pipeline.handle),
+                             nameOf(VK_OBJECT_TYPE_PIPELINE, numberOf(pipeline.handle))};
+  instance->messages.report(diagnostics, object, pipeline.sources);
+}
+
+// Runs on the worker's thread.
+void Device::link(LinkedPipeline& pipeline) const {
+  const PipelineCopy& copy = pipeline.copy;
+  std::vector<std::string> names;
+  std::vector<Diagnostic> notes;
+  for (std::size_t i = 0; i < copy.stages.size(); ++i) {
+    const StageCopy& stage = copy.stages[i];
+    std::string why = "its SPIR-V is unknown";
+    std::optional<check::ModuleSummary> summary;
+    if (stage.words) summary = check::summarize(*stage.words, why);
+    std::string name = stage.name;
+    if (name.empty() && summary && summary->sources.size() == 1) name = summary->sources.begin()->first;
+    if (name.empty()) name = fmt::format("stage {}", i);
+    if (stage.entryPoint != "main") name += fmt::format(" ({})", stage.entryPoint);
+    // Two stages can be the same entry point with different constants.
+    if (std::ranges::find(names, name) != names.end()) name += fmt::format(" (stage {})", i);
+    names.push_back(name);
+    if (summary) {
+      pipeline.sources.insert(summary->sources.begin(), summary->sources.end());
+      pipeline.modules.push_back(
+          check::stageModule(name, *stage.words, {modelOf(stage.stage), stage.entryPoint}, stage.values));
+    } else {
+      pipeline.modules.push_back({name, *check::stageOf(modelOf(stage.stage)), {}, why});
+    }
+    if (const check::ModuleStage& last = pipeline.modules.back(); !last.problem.empty()) {
+      Diagnostic d;
+      d.severity = Severity::note;
+      d.file = last.name;
+      d.text = "not checked: " + last.problem;
+      notes.push_back(std::move(d));
+    }
+    const auto module = spirv::Module::read(pipeline.modules.back().spirv);
+    pipeline.recordBytes.push_back(module ? spirv::shaderRecordBytes(*module) : 0);
+  }
+  check::PipelineGroups& groups = pipeline.groups;
+  groups.noun = "pipeline";
+  groups.rays = {""};
+  groups.hitRecords = check::HitRecords::byRecord;
+  groups.tablesKnown = false;
+  groups.declaredRecursion = std::max(1u, copy.depth);
+  for (std::size_t g = 0; g < copy.groups.size(); ++g) {
+    const GroupCopy& group = copy.groups[g];
+    const auto nameAt = [&](const std::optional<std::size_t>& stage) { return stage ? names[*stage] : std::string(); };
+    if (group.type != VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR) {
+      program::HitGroup hit;
+      hit.name = std::to_string(g);
+      hit.shaders[""] = {nameAt(group.closestHit), nameAt(group.anyHit), nameAt(group.intersection), {}, 0};
+      groups.hitGroups.push_back(std::move(hit));
+    } else if (group.general) {
+      const std::string& name = names[*group.general];
+      switch (copy.stages[*group.general].stage) {
+        case VK_SHADER_STAGE_RAYGEN_BIT_KHR: groups.rayGenerations.push_back(name); break;
+        case VK_SHADER_STAGE_MISS_BIT_KHR: groups.misses.push_back({{}, name, {}, 0}); break;
+        default: groups.callables.push_back({{}, name, {}, 0});
+      }
+    }
+  }
+  pipeline.result = check::checkModules(groups, pipeline.modules, limits);
+  check::Suppressions(pipeline.sources).apply(pipeline.result.diagnostics);
+  std::ranges::move(notes, std::back_inserter(pipeline.result.diagnostics));
+}
+
+void Device::checkStackSize(VkCommandBuffer commands, std::uint32_t bytes) {
+  const std::shared_ptr<LinkedPipeline> bound = boundPipeline(commands);
+  if (!bound || !table.GetRayTracingShaderGroupStackSizeKHR) return;
+  std::vector<check::StackFrame> chain;
+  for (const std::string& stage : bound->result.chain) {
+    check::StackFrame frame{stage, 0};
+    for (std::size_t g = 0; g < bound->copy.groups.size(); ++g) {
+      const GroupCopy& group = bound->copy.groups[g];
+      const auto add = [&](const std::optional<std::size_t>& index, VkShaderGroupShaderKHR kind) {
+        if (index && bound->modules[*index].name == stage)
+          frame.bytes =
+              table.GetRayTracingShaderGroupStackSizeKHR(handle, bound->handle, static_cast<std::uint32_t>(g), kind);
+      };
+      add(group.general, VK_SHADER_GROUP_SHADER_GENERAL_KHR);
+      add(group.closestHit, VK_SHADER_GROUP_SHADER_CLOSEST_HIT_KHR);
+    }
+    chain.push_back(std::move(frame));
+  }
+  if (auto found = check::checkStackSize(bytes, chain)) report({std::move(*found)}, *bound);
+}
+
+}  // namespace quintet::layer

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mode sbt=1: copies the shader binding table of each trace and the instances of each build, as they are when the device
+// executes the command, and checks them once the copy is complete. Thread-safe.
+//
+// A copy is recorded before the command of the application, in its command buffer: into a buffer of the layer, followed by a
+// mark. The layer looks for marks in calls that often follow the end of an execution, such as waits and submissions.
+#ifndef QUINTET_LAYER_TABLE_CAPTURE_H
+#define QUINTET_LAYER_TABLE_CAPTURE_H
+
+#include <array>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "device.h"
+
+namespace quintet::layer {
+
+class TableCapture {
+ public:
+  explicit TableCapture(Device& device) : device_(device) {}
+  ~TableCapture();  // the device is idle
+  TableCapture(const TableCapture&) = delete;
+
+  // Buffers of these usages must be readable by copies.
+  static VkBufferUsageFlags usageFor(VkBufferUsageFlags usage);
+  void addBuffer(VkBuffer buffer, VkDeviceSize bytes);
+  void addAddress(VkBuffer buffer, VkDeviceAddress address);
+  void removeBuffer(VkBuffer buffer);
+
+  void removePipeline(VkPipeline pipeline);
+
+  // Before a trace. The regions are in the order of check::TableKind.
+  void trace(VkCommandBuffer commands, const std::array<VkStridedDeviceAddressRegionKHR, check::kTableKinds>& regions);
+  // Before builds of acceleration structures.
+  void build(VkCommandBuffer commands, std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
+             const VkAccelerationStructureBuildRangeInfoKHR* const* ranges);
+  void copyStructure(VkAccelerationStructureKHR from, VkAccelerationStructureKHR to);
+  void removeStructure(VkAccelerationStructureKHR structure);
+
+  void addCommands(VkCommandPool pool, std::uint32_t count, const VkCommandBuffer* commands);
+  // The commands are not pending any more: they are recorded again or freed.
+  void release(VkCommandBuffer commands);
+  void releasePool(VkCommandPool pool);
+
+  void poll();  // checks what is complete
+
+ private:
+  struct Buffer {
+    VkDeviceSize bytes = 0;
+    VkDeviceAddress address = 0;  // 0 if it was not queried
+  };
+  struct Part {  // of a copy
+    VkBuffer source = VK_NULL_HANDLE;
+    VkDeviceSize from = 0, bytes = 0;
+  };
+  struct Copy {
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::byte* mapped = nullptr;
+    std::size_t markOffset = 0;
+    // Of a trace.
+    std::shared_ptr<LinkedPipeline> pipeline;
+    std::array<check::TableRegion, check::kTableKinds> regions;
+    std::array<std::pair<std::size_t, std::size_t>, check::kTableKinds> data;  // offset and bytes in `mapped`
+    // Of a build.
+    VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
+    std::size_t instances = 0;
+  };
+  struct Bottom {
+    std::vector<program::GeometryFacts> geometries;
+  };
+  struct Found {  // by buffer
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0, available = 0;
+  };
+
+  std::optional<Found> find(VkDeviceAddress address) const;
+  bool record(Copy& copy, const std::vector<Part>& parts);
+  void destroy(const Copy& copy) const;
+  void finish(Copy copy, std::vector<std::byte> bytes);
+  void finishTrace(const Copy& copy, const std::vector<std::byte>& bytes);
+  void finishBuild(const Copy& copy, const std::vector<std::byte>& bytes);
+  const std::vector<check::TableGroup>& groupsOf(LinkedPipeline& pipeline);
+  void link(LinkedPipeline& pipeline, const check::TableFindings& found);
+  void addInstances(check::PipelineGroups& groups);
+
+  Device& device_;
+  std::mutex mutex_;
+  std::unordered_map<VkBuffer, Buffer> buffers_;
+  std::map<VkDeviceAddress, VkBuffer> addresses_;
+  std::list<Copy> copies_;
+  std::unordered_map<VkCommandBuffer, VkCommandPool> pools_;
+  std::unordered_map<VkAccelerationStructureKHR, Bottom> bottoms_;
+  std::unordered_map<VkAccelerationStructureKHR, std::vector<VkAccelerationStructureInstanceKHR>> tops_;
+  std::unordered_map<VkPipeline, std::vector<check::TableGroup>> groups_;
+  std::set<std::string> linked_;  // tables that were already linked
+};
+
+}  // namespace quintet::layer
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check/modules/stage_module.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "base/error.h"
+
+namespace quintet::check {
+namespace {
+
+constexpr std::uint32_t swapped(std::uint32_t word) {
+  return word << 24 | (word & 0xFF00u) << 8 | (word >> 8 & 0xFF00u) | word >> 24;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> moduleWords(const std::string& file, std::span<const std::byte> bytes) {
+  constexpr std::uint32_t kMagic = spv::MagicNumber;
+  std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+  if (!words.empty()) std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+  if (words.empty() || (words[0] != kMagic && words[0] != swapped(kMagic)))
+    throw FileError(file, "byte 0", "this is not a SPIR-V module");
+  if (bytes.size() % sizeof(std::uint32_t) != 0)
+    throw FileError(file, "byte " + std::to_string(words.size() * sizeof(std::uint32_t)),
+                    "the size is not a multiple of 4 bytes");
+  if (words[0] != kMagic) std::ranges::transform(words, words.begin(), swapped);
+  return words;
+}
+
+std::optional<shader::Stage> stageOf(spv::ExecutionModel model) {
+  using Model = spv::ExecutionModel;
+  switch (model) {
+    case Model::RayGenerationKHR: return shader::Stage::rayGeneration;
+    case Model::IntersectionKHR: return shader::Stage::intersection;
+    case Model::AnyHitKHR: return shader::Stage::anyHit;
+    case Model::ClosestHitKHR: return shader::Stage::closestHit;
+    case Model::MissKHR: return shader::Stage::miss;
+    case Model::CallableKHR: return shader::Stage::callable;
+    default: return {};
+  }
+}
+
+std::optional<ModuleSummary> summarize(const std::vector<std::uint32_t>& words, std::string& why) {
+  const std::optional<spirv::Module> module = spirv::Module::read(words, &why);
+  if (!module) return {};
+  ModuleSummary summary{{}, module->sources()};
+  std::ranges::copy_if(module->entryPoints(), std::back_inserter(summary.entryPoints),
+                       [](const spirv::EntryPoint& entry) { return stageOf(entry.stage).has_value(); });
+  return summary;
+}
+
+ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t>& words,
+                        const spirv::EntryPoint& entryPoint,
+                        const std::optional<shader::SpecializationValues>& values) {
+  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}};
+  try {
+    stage.spirv = shader::optimizeSpecialized(spirv::withEntryPoint(words, entryPoint), values);
+  } catch (const Error& error) {
+    stage.problem = error.what();
+  }
+  return stage;
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small Vulkan application with ray tracing, without Quintet's libraries: one instance, one trace, one result per pixel.
+// Tests edit its shaders and its calls, and read the messages that it got from VK_EXT_debug_utils.
+#ifndef QUINTET_TESTS_LAYER_APPLICATION_H
+#define QUINTET_TESTS_LAYER_APPLICATION_H
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace quintet::test {
+
+enum class Modules { handles, inlined, library, deferred };
+
+// What the application does. The defaults are correct.
+struct Application {
+  // GLSL by file: "a.rgen". A file ".spvasm" is SPIR-V assembly. Two lines precede GLSL, so its first line is line 3.
+  std::map<std::string, std::string> shaders;
+  struct HitGroup {
+    std::string closestHit, anyHit, intersection;  // files; can be empty
+  };
+  std::vector<std::string> misses{"a.rmiss"}, callables;
+  std::vector<HitGroup> hitGroups{{"a.rchit", "", ""}};
+  std::uint32_t depth = 1;
+  std::map<std::uint32_t, std::uint32_t> constants;  // of ray generation
+  Modules modules = Modules::handles;
+  bool debugInfo = true;
+
+  bool boxes = false;                  // geometry: boxes instead of triangles
+  std::uint32_t recordOffset = 0;      // of the instance
+  std::optional<std::uint32_t> stack;  // vkCmdSetRayTracingPipelineStackSizeKHR
+
+  // Shader binding table. Each region starts at a multiple of 256 bytes.
+  std::uint32_t recordBytes = 64;                      // stride of miss, hit and callable records
+  std::vector<std::uint32_t> missRecords, hitRecords;  // indices of groups; empty for all of the kind in their order
+  // Changes the bytes of the table, of which each region has 1024, and the regions: ray generation, miss, hit, callable.
+  struct Region {
+    std::uint64_t offset = 0, stride = 0, size = 0;
+  };
+  std::function<void(std::vector<std::byte>& bytes, std::vector<Region>& regions)> editTable;
+  std::uint32_t submissions = 1;  // of the same trace
+  std::uint32_t width = 8;        // 0 traces nothing: for tables that crash a driver
+
+  std::vector<std::string> layers;
+};
+
+// An application without mistakes.
+Application correctApplication();
+
+struct Message {
+  std::string id, text, object;
+};
+struct RunResult {
+  std::vector<Message> messages;    // of the layer under test: ids that start with Q
+  std::vector<std::string> others;  // of the validation layers
+  std::vector<float> pixels;
+  double creationSeconds = 0;  // of the pipeline
+  double firstSeconds = 0;     // of the first submission, from recording to completion
+  double traceSeconds = 0;     // of the others
+  std::string error;           // of a Vulkan call; empty if all succeeded
+};
+
+RunResult runApplication(const Application& application);
+
+}  // namespace quintet::test
+#endif

@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: Apache-2.0
+// VK_LAYER_QUINTET_link_check on a small application: each mistake is reported exactly once, and the correct application,
+// however it creates its pipeline, without a report. Environment: QUINTET_LAYER_FOLDER, the folder of the manifest.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+
+#include "application.h"
+
+namespace quintet::test {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kLayer = "VK_LAYER_QUINTET_link_check";
+constexpr const char* kKhronos = "VK_LAYER_KHRONOS_validation";
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, text.npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+struct Mistake {
+  std::string name;
+  std::string id;  // of the only report
+  std::function<void(Application&)> make;
+};
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+// Replaces text of a shader.
+std::function<void(Application&)> edit(const std::string& file, const std::string& from, const std::string& to) {
+  return [=](Application& app) { replace(app.shaders.at(file), from, to); };
+}
+
+constexpr const char* kBox = R"(hitAttributeEXT vec3 normal;
+void main() {
+  normal = vec3(0, 0, -1);
+  reportIntersectionEXT(4.0, 0u);
+}
+)";
+constexpr const char* kBoxHit = R"(struct Payload { vec3 color; float t; };
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec3 normal;
+void main() { payload = Payload(normal, gl_HitTEXT); }
+)";
+
+// Boxes with an intersection shader.
+void useBoxes(Application& app) {
+  app.boxes = true;
+  app.shaders["b.rint"] = kBox;
+  app.shaders["b.rchit"] = kBoxHit;
+  app.hitGroups = {{"b.rchit", "", "b.rint"}};
+}
+
+std::function<void(Application&)> editBoxes(const std::string& file, const std::string& from, const std::string& to) {
+  return [=](Application& app) {
+    useBoxes(app);
+    replace(app.shaders.at(file), from, to);
+  };
+}
+
+// The miss shader calls a callable shader.
+void useCallable(Application& app) {
+  app.callables = {"a.rcall"};
+  app.shaders["a.rcall"] = "layout(location = 0) callableDataInEXT vec3 light;\nvoid main() { light = vec3(1); }\n";
+  app.shaders["a.rmiss"] = R"(struct Payload { vec3 color; float t; };
+layout(location = 0) rayPayloadInEXT Payload payload;
+layout(location = 1) callableDataEXT vec3 light;
+void main() {
+  executeCallableEXT(0, 1);
+  payload = Payload(light, -1.0);
+}
+)";
+}
+
+// The closest-hit shader traces a shadow ray.
+void useShadow(Application& app) {
+  app.depth = 2;
+  app.misses = {"a.rmiss", "b.rmiss"};
+  app.shaders["b.rmiss"] = "layout(location = 1) rayPayloadInEXT float lit;\nvoid main() { lit = 1.0; }\n";
+  app.shaders["a.rchit"] = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+struct Payload { vec3 color; float t; };
+layout(location = 0) rayPayloadInEXT Payload payload;
+layout(location = 1) rayPayloadEXT float lit;
+void main() {
+  float t = gl_HitTEXT;
+  vec3 p = gl_WorldRayOriginEXT + t * gl_WorldRayDirectionEXT;
+  lit = 0.0;
+  traceRayEXT(tlas, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 1, p, 0.01,
+              vec3(0, 1, 0), 10.0, 1);
+  payload = Payload(vec3(lit), t);
+}
+)";
+}
+
+void useAnyHit(Application& app) {
+  app.hitGroups[0].anyHit = "a.rahit";
+  app.shaders["a.rahit"] =
+      "hitAttributeEXT vec2 weights;\nvoid main() { if (weights.x > 0.5) ignoreIntersectionEXT; }\n";
+}
+
+// A record of the hit table that no correct application has; it is not traced.
+std::function<void(Application&)> editTable(
+    std::function<void(std::vector<std::byte>&, std::vector<Application::Region>&)> e) {
+  return [e](Application& app) {
+    app.editTable = e;
+    app.width = 0;
+  };
+}
+
+std::vector<Mistake> mistakes() {
+  return {
+      {"PayloadTypeOfMiss", "Q101",
+       [](Application& app) {
+         replace(app.shaders.at("a.rmiss"), "vec3 color; float t;", "vec4 color; float t;");
+         replace(app.shaders.at("a.rmiss"), "vec3(0.5)", "vec4(0.5)");
+       }},
+      {"PayloadOrderOfClosestHit", "Q101",
+       [](Application& app) {
+         replace(app.shaders.at("a.rchit"), "vec3 color; float t;", "float t; vec3 color;");
+         replace(app.shaders.at("a.rchit"), "Payload(vec3(weights, 0.25), gl_HitTEXT)",
+                 "Payload(gl_HitTEXT, vec3(weights, 0.25))");
+       }},
+      {"OutgoingPayloadInMiss", "Q103", edit("a.rmiss", "rayPayloadInEXT", "rayPayloadEXT")},
+      {"MissLeavesAMember", "Q104", edit("a.rmiss", "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;")},
+      {"ClosestHitLeavesAMemberOnAPath", "Q104",
+       edit("a.rchit", "payload = Payload(vec3(weights, 0.25), gl_HitTEXT);",
+            "payload.t = gl_HitTEXT; if (weights.x > 0.5) payload.color = vec3(weights, 0.0);")},
+      {"NestedTraceOverwritesThePayload", "Q105",
+       [](Application& app) {
+         app.depth = 2;
+         app.shaders["a.rchit"] = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+struct Payload { vec3 color; float t; };
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 weights;
+void main() {
+  float t = gl_HitTEXT;
+  payload.color = vec3(weights, t);
+  traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFF, 0, 1, 0, vec3(50, 50, 0), 0.01, vec3(0, 0, -1), 1.0, 0);
+  payload = Payload(payload.color * 0.5, t);
+}
+)";
+       }},
+      {"TwoIncomingPayloads", "Q106",
+       edit("a.rmiss", "void main() {",
+            "layout(location = 1) rayPayloadInEXT vec3 other;\nvoid main() { other = vec3(1.0);")},
+      {"PayloadReadBeforeItIsSet", "Q107",
+       edit("a.rchit", "payload = Payload(vec3(weights, 0.25), gl_HitTEXT);",
+            "payload = Payload(vec3(weights, 0.25) * payload.color.x, gl_HitTEXT);")},
+      {"AttributeTypesDiffer", "Q201",
+       [](Application& app) {
+         useBoxes(app);
+         replace(app.shaders.at("b.rchit"), "vec3 normal", "vec4 normal");
+         replace(app.shaders.at("b.rchit"), "Payload(normal", "Payload(normal.xyz");
+       }},
+      {"AttributeOfTriangles", "Q202",
+       [](Application& app) {
+         replace(app.shaders.at("a.rchit"), "vec2 weights", "vec3 weights");
+         replace(app.shaders.at("a.rchit"), "vec3(weights, 0.25)", "weights");
+       }},
+      {"AttributeIsTooLarge", "Q203",
+       [](Application& app) {
+         useBoxes(app);
+         replace(app.shaders.at("b.rint"), "vec3 normal;", "vec4 normal[3];");
+         replace(app.shaders.at("b.rint"), "normal = vec3(0, 0, -1)", "normal = vec4[3](vec4(1), vec4(1), vec4(1))");
+         replace(app.shaders.at("b.rchit"), "hitAttributeEXT vec3 normal;\n", "const vec3 normal = vec3(1);\n");
+       }},
+      {"AttributeIsNotWritten", "Q205", editBoxes("b.rint", "normal = vec3(0, 0, -1);", "")},
+      {"IntersectionReportsNothing", "Q206", editBoxes("b.rint", "reportIntersectionEXT(4.0, 0u);", "")},
+      {"CallableDataTypesDiffer", "Q301",
+       [](Application& app) {
+         useCallable(app);
+         replace(app.shaders.at("a.rcall"), "vec3 light", "vec4 light");
+         replace(app.shaders.at("a.rcall"), "vec3(1)", "vec4(1)");
+       }},
+      {"CallWithoutCallableShaders", "Q302",
+       [](Application& app) {
+         useCallable(app);
+         app.callables.clear();
+         app.width = 0;
+       }},
+      {"CallableDataIsNotWritten", "Q304",
+       [](Application& app) {
+         useCallable(app);
+         replace(app.shaders.at("a.rcall"), "light = vec3(1);", "");
+       }},
+      {"RecursionIsDeeperThanDeclared", "Q402",
+       [](Application& app) {
+         useShadow(app);
+         app.depth = 1;
+         app.width = 0;
+       }},
+      {"OffsetExceedsItsBits", "Q503", edit("a.rgen", "0xFF, 0, 1, 0,", "0xFF, 16, 1, 0,")},
+      {"MissIndexExceedsItsBits", "Q504", edit("a.rgen", "0xFF, 0, 1, 0,", "0xFF, 0, 1, 65536,")},
+      {"MaskExceedsItsBits", "Q505", edit("a.rgen", "0xFF, 0, 1, 0,", "0x1FF, 0, 1, 0,")},
+      {"MaskIsZero", "Q507", edit("a.rgen", "0xFF, 0, 1, 0,", "0x00, 0, 1, 0,")},
+      {"FlagsAndMaskAreSwapped", "Q508", edit("a.rgen", "gl_RayFlagsNoneEXT, 0xFF,", "0xFF, gl_RayFlagsNoneEXT,")},
+      {"IntervalIsEmpty", "Q509", edit("a.rgen", "0.001, direction, 100.0", "100.0, direction, 0.001")},
+      {"DirectionIsZero", "Q510",
+       [](Application& app) {
+         replace(app.shaders.at("a.rgen"), "vec3(0, 0, 1);", "vec3(0);");
+         app.width = 0;
+       }},
+      {"FirstHitIsShaded", "Q512", edit("a.rgen", "gl_RayFlagsNoneEXT", "gl_RayFlagsTerminateOnFirstHitEXT")},
+      {"FlagsSkipAllGeometry", "Q513", edit("a.rgen", "gl_RayFlagsNoneEXT", "0x100u")},
+      {"FlagsExcludeEachOther", "Q605",
+       edit("a.rgen", "gl_RayFlagsNoneEXT",
+            "gl_RayFlagsCullBackFacingTrianglesEXT | gl_RayFlagsCullFrontFacingTrianglesEXT")},
+      {"AnyHitIgnoresEverything", "Q606",
+       [](Application& app) {
+         useAnyHit(app);
+         replace(app.shaders.at("a.rahit"), "if (weights.x > 0.5) ", "");
+       }},
+      {"HitKindIsReserved", "Q608", editBoxes("b.rint", "4.0, 0u", "4.0, 200u")},
+      {"FlagsExcludeTheAnyHitShader", "Q610",
+       [](Application& app) {
+         useAnyHit(app);
+         replace(app.shaders.at("a.rgen"), "gl_RayFlagsNoneEXT", "gl_RayFlagsOpaqueEXT");
+       }},
+      {"DistanceOfANormalizedDirection", "Q701",
+       [](Application& app) {
+         useBoxes(app);
+         app.shaders["b.rint"] = R"(hitAttributeEXT vec3 normal;
+void main() {
+  vec3 d = normalize(gl_ObjectRayDirectionEXT), o = gl_ObjectRayOriginEXT;
+  float t = -dot(o - vec3(0, 0, 5), d) / dot(d, d);
+  normal = vec3(0, 0, -1);
+  reportIntersectionEXT(t, 0u);
+}
+)";
+       }},
+      {"ShadowRayWithoutAnOffset", "Q705",
+       [](Application& app) {
+         useShadow(app);
+         replace(app.shaders.at("a.rchit"), "p, 0.01,", "p, 0.0,");
+       }},
+      {"IndexBeyondAnArray", "Q711",
+       edit("a.rmiss", "void main() { payload = Payload(vec3(0.5), -1.0); }",
+            "layout(set = 0, binding = 1, std430) buffer R { float at[4]; } r;\n"
+            "void main() { float s = 0.0; for (int i = 0; i <= 4; ++i) s += r.at[i];\n"
+            "payload = Payload(vec3(s), -1.0); }")},
+      {"IntegerDivisionOfTheLaunchId", "Q716",
+       edit("a.rgen", "(vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 0.5",
+            "vec2(gl_LaunchIDEXT.xy / gl_LaunchSizeEXT.xy) - 0.5")},
+      {"UnreachableCallable", "Q801",
+       [](Application& app) {
+         useCallable(app);
+         app.shaders["a.rmiss"] = correctApplication().shaders.at("a.rmiss");
+       }},
+      // Only the table shows these (sbt=1).
+      {"MissIndexBeyondTheTable", "Q502",
+       [](Application& app) {
+         replace(app.shaders.at("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, 2,");
+         app.misses = {"a.rmiss", "c.rmiss"};
+         app.shaders["c.rmiss"] = app.shaders.at("a.rmiss");
+         app.width = 0;
+       }},
+      {"HitRecordBeyondTheTable", "Q515",
+       [](Application& app) {
+         app.recordOffset = 3;
+         app.width = 0;
+       }},
+      {"TrianglesUseAProceduralGroup", "Q609",
+       [](Application& app) {
+         useBoxes(app);
+         app.boxes = false;
+         app.width = 0;
+       }},
+      {"HandleOfADifferentPipeline", "Q661",
+       editTable([](auto& bytes, auto& regions) { std::memset(bytes.data() + regions[2].offset, 0x5A, 32); })},
+      {"MissHandleInTheHitRegion", "Q662",
+       [](Application& app) {
+         app.hitRecords = {1};
+         app.width = 0;
+       }},
+      {"NullRayGeneration", "Q663",
+       editTable([](auto& bytes, auto& regions) { std::memset(bytes.data() + regions[0].offset, 0, 64); })},
+      {"StrideIsNotAligned", "Q664", editTable([](auto&, auto& regions) { regions[1].stride = 40; })},
+      {"RegionBeyondItsBuffer", "Q665", editTable([](auto&, auto& regions) {
+         regions[3] = {3072, 64, 64 * 64};
+       })},
+      {"RecordBlockDoesNotFit", "Q666",
+       [](Application& app) {
+         replace(app.shaders.at("a.rchit"), "void main() { payload = Payload(vec3(weights, 0.25), gl_HitTEXT); }",
+                 "layout(shaderRecordEXT, std430) buffer Record { vec4 a, b, tint; } record;\n"
+                 "void main() { payload = Payload(record.tint.xyz + vec3(weights, 0), gl_HitTEXT); }");
+         app.width = 0;
+       }},
+      {"StackIsTooSmall", "Q667",
+       [](Application& app) {
+         useShadow(app);
+         app.stack = 0;
+         app.width = 0;
+       }},
+  };
+}
+
+Application withLayer(std::vector<std::string> layers = {kLayer}) {
+  Application app = correctApplication();
+  app.layers = std::move(layers);
+  return app;
+}
+
+std::vector<std::string> idsOf(const RunResult& run) {
+  std::vector<std::string> ids;
+  for (const Message& message : run.messages) ids.push_back(message.id);
+  return ids;
+}
+
+std::string textsOf(const RunResult& run) {
+  std::string all;
+  for (const Message& message : run.messages) all += message.text + "\n";
+  return all;
+}
+
+class LayerMistakes : public testing::TestWithParam<Mistake> {};
+
+TEST_P(LayerMistakes, AreReportedExactlyOnce) {
+  Application app = withLayer();
+  GetParam().make(app);
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(idsOf(result), ElementsAre(GetParam().id)) << textsOf(result);
+  EXPECT_THAT(result.messages, Contains(Field(&Message::object, "main")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Layer, LayerMistakes, testing::ValuesIn(mistakes()),
+                         [](const auto& tested) { return tested.param.name; });
+
+class LayerCorrect : public testing::TestWithParam<std::string> {};
+
+// The application without a mistake, and the same with each feature that the mistakes use.
+TEST_P(LayerCorrect, IsNotReported) {
+  Application app = withLayer();
+  const std::string& feature = GetParam();
+  if (feature == "Boxes") useBoxes(app);
+  if (feature == "Callable") useCallable(app);
+  if (feature == "Shadow") useShadow(app);
+  if (feature == "AnyHit") useAnyHit(app);
+  if (feature == "Inlined") app.modules = Modules::inlined;
+  if (feature == "Library") app.modules = Modules::library;
+  if (feature == "Deferred") app.modules = Modules::deferred;
+  if (feature == "NoDebugInfo") app.debugInfo = false;
+  if (feature == "Stack") app.stack = 1u << 16;
+  if (feature == "Constants") {
+    replace(app.shaders.at("a.rgen"), "void main() {", "layout(constant_id = 0) const uint kMiss = 7u;\nvoid main() {");
+    replace(app.shaders.at("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, kMiss,");
+    app.constants = {{0, 0}};
+  }
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
+  // The layer does not change the result.
+  app.layers.clear();
+  EXPECT_EQ(runApplication(app).pixels, result.pixels);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layer, LayerCorrect,
+                         testing::Values("Triangles", "Boxes", "Callable", "Shadow", "AnyHit", "Inlined", "Library",
+                                         "Deferred", "NoDebugInfo", "Stack", "Constants"),
+                         [](const auto& tested) { return tested.param; });
+
+class LayerCreation : public testing::TestWithParam<Modules> {};
+
+TEST_P(LayerCreation, FindsMistakesHoweverThePipelineIsCreated) {
+  Application app = withLayer();
+  app.modules = GetParam();
+  replace(app.shaders.at("a.rchit"), "payload = Payload(vec3(weights, 0.25), gl_HitTEXT);", "payload.t = gl_HitTEXT;");
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(idsOf(result), ElementsAre("Q104"));
+  EXPECT_THAT(textsOf(result), AllOf(HasSubstr("a.rgen:10"), HasSubstr("payload.color")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Layer, LayerCreation,
+                         testing::Values(Modules::handles, Modules::inlined, Modules::library, Modules::deferred));
+
+TEST(Layer, AppliesSpecializationConstants) {
+  Application app = withLayer();
+  replace(app.shaders.at("a.rgen"), "void main() {", "layout(constant_id = 0) const uint kMask = 255u;\nvoid main() {");
+  replace(app.shaders.at("a.rgen"), "0xFF, 0, 1, 0,", "kMask, 0, 1, 0,");
+  app.constants = {{0, 0}};
+  EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q507"));
+}
+
+// Ray generation in SPIR-V assembly, without names and lines.
+TEST(Layer, NamesTheIdOfHandwrittenSpirv) {
+  Application app = withLayer();
+  app.misses = {"m.rmiss.spvasm"};
+  app.shaders["m.rmiss.spvasm"] = R"(OpCapability RayTracingKHR
+OpExtension "SPV_KHR_ray_tracing"
+OpMemoryModel Logical GLSL450
+OpEntryPoint MissKHR %main "main" %in
+%void = OpTypeVoid
+%signature = OpTypeFunction %void
+%float = OpTypeFloat 32
+%v2 = OpTypeVector %float 2
+%pointer = OpTypePointer IncomingRayPayloadKHR %v2
+%in = OpVariable %pointer IncomingRayPayloadKHR
+%zero = OpConstant %float 0
+%value = OpConstantComposite %v2 %zero %zero
+%main = OpFunction %void None %signature
+%entry = OpLabel
+OpStore %in %value
+OpReturn
+OpFunctionEnd
+)";
+  app.debugInfo = false;
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(idsOf(result), ElementsAre("Q101"));
+  EXPECT_THAT(textsOf(result), AllOf(HasSubstr("SPIR-V id %"), HasSubstr("OpTraceRayKHR number 1")));
+}
+
+// Above and below the validation layers: neither layer disturbs the other.
+TEST(Layer, WorksWithTheValidationLayers) {
+  for (const std::vector<std::string>& layers :
+       {std::vector<std::string>{kLayer, kKhronos}, std::vector<std::string>{kKhronos, kLayer}}) {
+    Application app = withLayer(layers);
+    RunResult result = runApplication(app);
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
+    EXPECT_THAT(result.others, IsEmpty());
+    replace(app.shaders.at("a.rmiss"), "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;");
+    result = runApplication(app);
+    EXPECT_THAT(idsOf(result), ElementsAre("Q104"));
+    EXPECT_THAT(result.others, IsEmpty());
+  }
+}
+
+// Prints the table of docs/layer.md: mistake, what the validation layers report, what the link check reports.
+TEST(LayerComparison, DISABLED_PrintsTheTable) {
+  for (const Mistake& mistake : mistakes()) {
+    Application app = withLayer({kKhronos, kLayer});
+    mistake.make(app);
+    const RunResult result = runApplication(app);
+    std::string others;
+    for (const std::string& other : result.others) {
+      const std::string id = other.substr(0, other.find(':'));
+      if (others.find(id) == others.npos) others += (others.empty() ? "" : ", ") + id;
+    }
+    std::cout << "| " << mistake.name << " | " << (others.empty() ? "–" : others) << " | " << mistake.id << " |\n";
+  }
+}
+
+// Prints the shortest times of pipeline creation, of the first submission, which waits for the check, and of later ones, with
+// and without the layer. Run it with
+// QUINTET_LINK_CHECK=sbt=0.
+TEST(LayerCost, DISABLED_PrintsTimes) {
+  double creation[2] = {1e9, 1e9}, first[2] = {1e9, 1e9}, trace[2] = {1e9, 1e9};
+  for (int i = 0; i < 20; ++i) {
+    for (const bool layer : {false, true}) {
+      Application app = withLayer(layer ? std::vector<std::string>{kLayer} : std::vector<std::string>{});
+      useShadow(app);
+      app.submissions = 501;
+      app.width = 64;
+      const RunResult result = runApplication(app);
+      ASSERT_EQ(result.error, "");
+      creation[layer] = std::min(creation[layer], result.creationSeconds);
+      trace[layer] = std::min(trace[layer], result.traceSeconds / (app.submissions - 1));
+      first[layer] = std::min(first[layer], result.firstSeconds);
+    }
+  }
+  for (const bool layer : {false, true})
+    std::cout << (layer ? "with the layer: " : "without:        ") << "creation " << creation[layer] * 1e3
+              << " ms, first trace " << first[layer] * 1e3 << " ms, trace " << trace[layer] * 1e6 << " us\n";
+}
+
+}  // namespace
+}  // namespace quintet::test
+
+int main(int count, char** arguments) {
+  ::setenv("VK_ADD_LAYER_PATH", QUINTET_LAYER_FOLDER, 0);
+  ::setenv("QUINTET_LINK_CHECK", "sbt=1", 0);
+  ::setenv("GALLIUM_OVERRIDE_CPU_CAPS", "avx", 0);  // docs/design/quirks.md
+  testing::InitGoogleMock(&count, arguments);
+  return RUN_ALL_TESTS();
+}

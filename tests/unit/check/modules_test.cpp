@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Raw SPIR-V modules: which rules run, locations with and without lines, records, and malformed modules.
+#include <gmock/gmock.h>
+
+#include "check/modules/stage_groups.h"
+#include "modules_test_support.h"
+#include "spirv/shader_record.h"
+
+namespace quintet::check {
+namespace {
+
+using shader::Stage;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  ASSERT_NE(at, text.npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+InstanceRecords instanceOf(std::uint32_t offset, std::uint32_t first, std::uint32_t count) {
+  InstanceRecords instance;
+  instance.facts.name = "ball";
+  instance.facts.firstGeometry = first;
+  instance.facts.geometryCount = count;
+  instance.recordOffset = offset;
+  return instance;
+}
+
+TEST(ModuleCheck, AcceptsACleanPipeline) { EXPECT_THAT(cleanPipeline().check(), IsEmpty()); }
+
+TEST(ModuleCheck, ReportsPayloadTypesAtTheLineOfTheTrace) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rmiss"), "vec4 color;", "vec3 color;");
+  replace(p.text("a.rmiss"), "vec4(0.5)", "vec3(0.5)");
+  EXPECT_THAT(p.check(), Contains("Q101 a.rgen:7"));
+}
+
+TEST(ModuleCheck, NamesTheIdIfThereAreNoLines) {
+  RawPipeline p = cleanPipeline();
+  p.lines = false;
+  replace(p.text("a.rmiss"), "vec4 color;", "vec3 color;");
+  replace(p.text("a.rmiss"), "vec4(0.5)", "vec3(0.5)");
+  const std::vector<Diagnostic> found = p.diagnostics();
+  ASSERT_THAT(found, testing::SizeIs(1));
+  EXPECT_EQ(found[0].id + found[0].file, "Q101a.rgen");
+  EXPECT_EQ(found[0].line, 0);
+  EXPECT_THAT(found[0].text, AllOf(HasSubstr("SPIR-V id %"), HasSubstr("OpTraceRayKHR number 1")));
+  EXPECT_THAT(found[0].text, testing::Not(HasSubstr("\x1f")));
+}
+
+TEST(ModuleCheck, DoesNotAssumeTheLibraryOfQuintet) {
+  RawPipeline p = cleanPipeline();
+  // A descriptor and push constants of its own, gl_InstanceID as an index, and structures with names of the library.
+  p.text("a.rchit") = R"(layout(location = 0) rayPayloadInEXT vec4 color;
+struct InstanceData { vec4 worldFromObject[3]; vec4 tint; };
+layout(set = 3, binding = 9) buffer Instances { InstanceData at[]; } instances;
+layout(push_constant) uniform Launch { uint firstSample; } launch;
+void main() { color = instances.at[gl_InstanceID].tint * float(launch.firstSample); }
+)";
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+TEST(ModuleCheck, ReportsMembersThatAShaderDoesNotWrite) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rmiss"), "color = vec4(0.5);", "color.x = 0.5;");
+  EXPECT_THAT(p.check(), Contains("Q104 a.rgen:7"));
+}
+
+TEST(ModuleCheck, AcceptsMembersThatOneOfSeveralUnknownHitGroupsWrites) {
+  RawPipeline p = cleanPipeline();
+  p.stages.push_back({"b.rchit", "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() { color.x = 1.0; }\n",
+                      Stage::closestHit});
+  program::HitGroup other;
+  other.shaders[""].closestHit = "b.rchit";
+  p.groups.hitGroups.push_back(other);
+  EXPECT_THAT(p.check(), IsEmpty());  // which of the two is hit is unknown
+  p.groups.geometries.resize(1);
+  p.groups.instances = {instanceOf(1, 0, 1)};
+  EXPECT_THAT(p.check(), Contains("Q104 a.rgen:7"));  // the second one
+}
+
+TEST(ModuleCheck, ReportsIndicesBeyondTheTable) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, 1,");
+  EXPECT_THAT(p.check(), ElementsAre("Q502 a.rgen:7"));
+  p.groups.tablesKnown = false;  // the miss shader can be record 1
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+TEST(ModuleCheck, ReportsRecordsBeyondTheTable) {
+  RawPipeline p = cleanPipeline();
+  p.groups.geometries.resize(2);
+  p.groups.instances = {instanceOf(0, 0, 1)};
+  EXPECT_THAT(p.check(), IsEmpty());
+  p.groups.instances = {instanceOf(0, 0, 2)};  // geometry 1 uses record 1
+  EXPECT_THAT(p.check(), ElementsAre("Q515 a.rgen:7"));
+}
+
+TEST(ModuleCheck, ReportsGeometryOfADifferentKind) {
+  RawPipeline p = cleanPipeline();
+  p.groups.geometries.resize(1);
+  p.groups.geometries[0].kind = program::GeometryKind::custom;
+  p.groups.instances = {instanceOf(0, 0, 1)};
+  EXPECT_THAT(p.check(), ElementsAre("Q609 a.rgen:7"));
+}
+
+TEST(ModuleCheck, ReportsAnyHitShadersThatFlagsExclude) {
+  RawPipeline p = cleanPipeline();
+  p.stages.push_back({"a.rahit", "void main() { ignoreIntersectionEXT; }\n", Stage::anyHit});
+  p.groups.hitGroups[0].shaders[""].anyHit = "a.rahit";
+  replace(p.text("a.rgen"), "gl_RayFlagsNoneEXT", "gl_RayFlagsOpaqueEXT");
+  EXPECT_THAT(p.check(), ElementsAre(testing::StartsWith("Q610 a.rahit")));
+}
+
+TEST(ModuleCheck, ReportsRecursionBeyondTheDeclaredDepth) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rchit") = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(location = 0) rayPayloadInEXT vec4 color;
+layout(location = 1) rayPayloadEXT vec4 inner;
+void main() {
+  inner = vec4(0);
+  traceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 0, vec3(1), 0.001, vec3(0, 0, 1), 100.0, 1);
+  color = inner;
+}
+)";
+  EXPECT_THAT(p.check(), Contains("Q402 a.rchit:8"));
+  p.groups.declaredRecursion = 2;
+  EXPECT_THAT(p.check(), IsEmpty());
+  p.groups.declaredRecursion.reset();  // the description does not say it
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+TEST(ModuleCheck, AppliesSpecializationConstants) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rgen"), "void main() {", "layout(constant_id = 3) const uint kMiss = 0u;\nvoid main() {");
+  replace(p.text("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, kMiss,");
+  EXPECT_THAT(p.check(), IsEmpty());  // unknown
+  p.values.emplace();
+  EXPECT_THAT(p.check(), IsEmpty());  // the default
+  (*p.values)[3] = {1};
+  EXPECT_THAT(p.check(), ElementsAre("Q502 a.rgen:8"));
+}
+
+TEST(ModuleCheck, FindsGroupsOfStagesAlone) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rmiss"), "vec4 color;", "vec3 color;");
+  replace(p.text("a.rmiss"), "vec4(0.5)", "vec3(0.5)");
+  const std::vector<ModuleStage> modules = p.modules();
+  const PipelineGroups groups = groupsOfStages(modules);
+  EXPECT_FALSE(groups.tablesKnown);
+  const CheckResult result = checkModules(groups, modules, {});
+  ASSERT_THAT(result.diagnostics, testing::SizeIs(1));
+  EXPECT_EQ(result.diagnostics[0].id, "Q101");
+  EXPECT_THAT(result.chain, ElementsAre("a.rgen", testing::_));
+}
+
+TEST(ModuleCheck, KeepsOneOfSeveralEntryPoints) {
+  // A second entry point with a function of its own, as in libraries of HLSL.
+  const std::vector<std::uint32_t> words = compileRaw(Stage::miss, cleanPipeline().text("a.rmiss"), "a.rmiss");
+  std::vector<std::uint32_t> twice(words.begin(), words.begin() + 5);
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+    const std::size_t count = words[at] >> 16;
+    const std::size_t copies = (words[at] & 0xFFFFu) == static_cast<std::uint32_t>(spv::Op::OpEntryPoint) ? 2 : 1;
+    for (std::size_t k = 0; k < copies; ++k) {
+      twice.insert(twice.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
+                   words.begin() + static_cast<std::ptrdiff_t>(at + count));
+      if (k == 1) twice[twice.size() - count + 3] = 0x00626173;  // "sab"
+    }
+  }
+  std::string why;
+  const auto summary = summarize(twice, why);
+  ASSERT_TRUE(summary) << why;
+  ASSERT_EQ(summary->entryPoints.size(), 2u);
+  EXPECT_EQ(summary->entryPoints[0].name, "main");
+  const auto one = spirv::withEntryPoint(twice, summary->entryPoints[0]);
+  const auto left = summarize(one, why);
+  ASSERT_TRUE(left);
+  ASSERT_EQ(left->entryPoints.size(), 1u);
+  EXPECT_EQ(left->entryPoints[0].name, "main");
+}
+
+TEST(ModuleCheck, ReportsWhatCannotBeAnalyzedAsAProblem) {
+  std::vector<std::uint32_t> words = compileRaw(Stage::miss, cleanPipeline().text("a.rmiss"), "a.rmiss");
+  std::string why;
+  const auto summary = summarize(words, why);
+  ASSERT_TRUE(summary);
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+    if ((words[at] & 0xFFFFu) == static_cast<std::uint32_t>(spv::Op::OpCapability)) words[at + 1] = 65000;
+  const ModuleStage stage = stageModule("a.rmiss", words, summary->entryPoints.front(), {});
+  EXPECT_THAT(stage.problem, HasSubstr("Invalid capability operand"));
+  RawPipeline p = cleanPipeline();
+  std::vector<ModuleStage> modules = p.modules();
+  modules[1] = stage;
+  EXPECT_THAT(checkModules(p.groups, modules, {}).diagnostics, IsEmpty());
+}
+
+TEST(ModuleCheck, RejectsFilesThatAreNoSpirv) {
+  EXPECT_THROW(moduleWords("a.spv", {}), FileError);
+  const std::string text = "#version 460\n";
+  EXPECT_THROW(moduleWords("a.spv", std::as_bytes(std::span(text))), FileError);
+}
+
+TEST(ShaderRecord, HasTheEndOfItsLastMember) {
+  const auto bytesOf = [](const std::string& block) {
+    const auto words = compileRaw(Stage::callable,
+                                  "#extension GL_EXT_scalar_block_layout : require\n"
+                                  "layout(location = 0) callableDataInEXT vec4 c;\n" +
+                                      block + "void main() { c = vec4(record.last); }\n",
+                                  "a.rcall");
+    const auto module = spirv::Module::read(words);
+    return module ? spirv::shaderRecordBytes(*module) : 0u;
+  };
+  EXPECT_EQ(bytesOf("layout(shaderRecordEXT, std430) buffer R { vec3 a; float b; vec4 last; } record;\n"), 32u);
+  EXPECT_EQ(bytesOf("layout(shaderRecordEXT, scalar) buffer R { float a; mat3 m; float last; } record;\n"), 44u);
+}
+
+}  // namespace
+}  // namespace quintet::check
