@@ -4,8 +4,8 @@
 import { Connection } from "./connection";
 import type { Diagnostic } from "./diagnostic";
 import { compareImages, type ImageDifference, kAllowedShare } from "./image_difference";
-import type { LessonTask } from "./lesson_tasks";
-import type { ImageMessage, ProgramText } from "./protocol";
+import { type LessonTask, solutionFiles } from "./lesson_tasks";
+import type { ImageMessage } from "./protocol";
 
 export const kCheckSize = { width: 240, height: 135 };
 const kTimeout = 60_000; // ms
@@ -16,17 +16,6 @@ export interface CheckResult {
   yours?: ImageBitmap;
   expected?: ImageBitmap;
   difference?: ImageDifference;
-}
-
-// The main file of the solution. Throws if an edit does not fit, which the tests exclude.
-export function solutionText(original: string, task: LessonTask): string {
-  let text = original;
-  for (const [from, to] of task.edits) {
-    const at = text.indexOf(from);
-    if (at < 0 || text.indexOf(from, at + 1) >= 0) throw new Error(`the text '${from}' must occur once`);
-    text = text.slice(0, at) + to + text.slice(at + from.length);
-  }
-  return text;
 }
 
 type Sources = Record<string, string>; // by name in the folder
@@ -91,13 +80,6 @@ class Renderer {
   }
 }
 
-function sourcesOf(program: ProgramText, texts: (path: string) => string): Sources {
-  const folder = program.main.replace(/[^/]*$/, "");
-  const sources: Sources = {};
-  for (const file of program.files) sources[file.path.startsWith(folder) ? file.path.slice(folder.length) : file.path.replace(/^.*\//, "")] = texts(file.path);
-  return sources;
-}
-
 async function decode(image: ImageMessage): Promise<{ bitmap: ImageBitmap; data: Uint8ClampedArray }> {
   const bitmap = await createImageBitmap(new Blob([image.file], { type: image.mime }), { colorSpaceConversion: "none" });
   const canvas = document.createElement("canvas");
@@ -108,32 +90,34 @@ async function decode(image: ImageMessage): Promise<{ bitmap: ImageBitmap; data:
   return { bitmap, data: context.getImageData(0, 0, bitmap.width, bitmap.height).data };
 }
 
-// `program`: the user's, with the texts of the editors; `original`: the built-in lesson.
-export async function checkTask(task: LessonTask, program: ProgramText, textOf: (path: string) => string, original: ProgramText): Promise<CheckResult> {
+// `mine` and `original`: files by name in the folder.
+export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, string>, original: ReadonlyMap<string, string>, main: string): Promise<CheckResult> {
   const renderer = new Renderer();
   try {
-    const originals = new Map(original.files.map((file) => [file.path, file.text]));
-    originals.set(original.main, solutionText(originals.get(original.main) ?? "", task));
+    const solution = solutionFiles(original, main, task);
     await renderer.connect();
-    let mine: ImageMessage;
+    let image: ImageMessage;
     try {
-      mine = await renderer.render(sourcesOf(program, textOf), task);
+      image = await renderer.render(Object.fromEntries(mine), task);
     } catch (error) {
       return { passed: false, message: `Your program does not render: ${(error as Error).message}` };
     }
-    const wanted = await renderer.render(sourcesOf(original, (path) => originals.get(path) ?? ""), task);
-    const [yours, expected] = await Promise.all([decode(mine), decode(wanted)]);
+    const wanted = await renderer.render(Object.fromEntries(solution), task);
+    const [yours, expected] = await Promise.all([decode(image), decode(wanted)]);
     const difference = compareImages(yours.data, expected.data, yours.bitmap.width);
     const passed = difference.differing <= kAllowedShare;
-    const percent = Math.max(0.1, Math.round(difference.differing * 1000) / 10);
-    const worst = difference.worst;
-    const message = passed
-      ? "Done: the image is that of the solution."
-      : `${percent} % of the pixels differ from the solution.` + (worst ? ` Largest difference at pixel ${worst.x}, ${worst.y}: yours is ${worst.left.join(" ")}, the solution has ${worst.right.join(" ")} (0 to 255).` : "");
-    return { passed, message, yours: yours.bitmap, expected: expected.bitmap, difference };
+    return { passed, message: passed ? "Done: the image is that of the solution." : differenceText(difference), yours: yours.bitmap, expected: expected.bitmap, difference };
   } catch (error) {
     return { passed: false, message: (error as Error).message };
   } finally {
     renderer.close();
   }
+}
+
+function differenceText(difference: ImageDifference): string {
+  const percent = Math.max(0.1, Math.round(difference.differing * 1000) / 10);
+  const worst = difference.worst;
+  const text = `${percent} % of the pixels differ from the solution.`;
+  if (!worst) return text;
+  return `${text} Largest difference at pixel ${worst.x}, ${worst.y}: yours is ${worst.left.join(" ")}, the solution has ${worst.right.join(" ")} (0 to 255).`;
 }

@@ -3,14 +3,14 @@
 import { api } from "./api";
 import { ask, notify } from "./dialog";
 import { h, replace } from "./dom";
-import { type CheckResult, checkTask, solutionText } from "./lesson_check";
+import { type CheckResult, checkTask } from "./lesson_check";
 import { icon } from "./icons";
-import { kLessonTasks, type LessonTask } from "./lesson_tasks";
+import { kLessonTasks, type LessonTask, solutionFiles } from "./lesson_tasks";
 import { inlineMarkdown, type MarkdownOptions, renderMarkdown } from "./markdown";
 import type { Lesson, ProgramText } from "./protocol";
 import { colored } from "./share";
 import { stored } from "./stored";
-import type { Workspace } from "./workspace";
+import { baseName, type Workspace } from "./workspace";
 
 export interface LessonHost {
   openLesson: (lesson: Lesson) => void;
@@ -23,6 +23,7 @@ export interface LessonHost {
 
 type Progress = Record<string, string[]>;
 
+const filesOf = (program: ProgramText) => new Map(program.files.map((file) => [baseName(file.path), file.text]));
 const shortName = (lesson: Lesson) => lesson.name.replace(/^.*\//, "").replace(/>$/, "");
 
 // Address of a page or figure relative to a page, below docs/; undefined if it leaves the folder.
@@ -216,12 +217,8 @@ export class LessonPanel {
     if (!program || (program.name !== lesson.copy && program.name !== lesson.name)) return { passed: false, message: "Another program is open. Choose the lesson again." };
     try {
       const original = await api.program(lesson.name);
-      const texts = new Map(workspace.files.map((file) => [file.path, workspace.textOf(file)]));
-      const now: ProgramText = { ...program, files: program.files.map((file) => file) };
-      // Paths change when the lesson is copied.
-      now.files = workspace.files.map((file) => ({ path: file.path, role: file.role, hash: file.hash, text: workspace.textOf(file) }));
-      now.main = now.files[0]?.path ?? program.main;
-      return await checkTask(task, now, (path) => texts.get(path) ?? "", original);
+      const mine = new Map(workspace.files.map((file) => [baseName(file.path), workspace.textOf(file)]));
+      return await checkTask(task, mine, filesOf(original), baseName(original.main));
     } catch (error) {
       return { passed: false, message: (error as Error).message };
     }
@@ -261,9 +258,12 @@ export class LessonPanel {
     if (!answer) return;
     try {
       const original = await api.program(lesson.name);
-      const main = original.files.find((file) => file.path === original.main);
-      const target = workspace.files.find((file) => file.path.replace(/^.*\//, "") === original.main.replace(/^.*\//, ""));
-      if (main && target) workspace.setText(target, solutionText(main.text, task));
+      const originals = filesOf(original);
+      const solution = solutionFiles(originals, baseName(original.main), task);
+      for (const file of workspace.files) {
+        const text = solution.get(baseName(file.path));
+        if (text !== undefined && text !== workspace.textOf(file)) workspace.setText(file, text);
+      }
     } catch (error) {
       notify((error as Error).message, "error");
     }
