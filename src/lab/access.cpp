@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -77,7 +78,7 @@ std::string randomToken() {
 Access::Access(std::string token, std::uint16_t port, std::string machine)
     : token_(std::move(token)), cookie_(fmt::format("quintet_lab_{}", port)), machine_(lowerCase(machine)) {}
 
-// A name of another machine that resolves to this one (DNS rebinding) would make a page of that name a page of this
+// A foreign name that resolves to this machine (DNS rebinding) would make a page of that name a page of this
 // server. Addresses cannot be rebound.
 bool Access::isKnownHost(const std::string& host) const {
   const std::string name = nameOf(host);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may send requests: only pages that this server delivered, in a browser that opened the URL with the token. A page
-// of another site can reach a server of this machine, too; Host, Origin and a cookie for this site alone prevent that
+// Who may send requests: only pages that this server delivered, in a browser that opened the URL with the token. Pages
+// of other sites can reach a server of this machine, too; Host, Origin and a cookie for this site alone prevent that
 // (docs/design/lab-protocol.md, "Access").
 #ifndef QUINTET_LAB_ACCESS_H
 #define QUINTET_LAB_ACCESS_H

@@ -22,7 +22,7 @@ constexpr std::string_view kMissingPage = R"(<!doctype html>
 <h1>The page of the lab is not built</h1>
 <p>This program was built without <code>web/dist</code>. To build the page, install Node.js 18 or later and npm, then run
 these commands in the folder of Quintet:</p>
-<pre>bash scripts/setup.sh lab
+<pre>bash scripts/setup.sh page
 cmake --preset release
 cmake --build --preset release</pre>
 <p>The server itself works; docs/design/lab-protocol.md describes its interface.</p>

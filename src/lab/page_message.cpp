@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "job/interactive/command_json.h"
 #include "job/interactive/json_fields.h"
+#include "lab/unsaved_program.h"
 
 namespace quintet::lab {
 namespace {
@@ -62,17 +63,30 @@ job::CameraRequest parseCamera(const Json& object) {
   return camera;
 }
 
+std::vector<std::pair<std::string, std::string>> parseFiles(const Json& object) {
+  if (!object.is_object() || object.empty()) throw UsageError("'files' must be an object with texts");
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [name, text] : object.items()) {
+    if (!isUnsavedName(name)) throw UsageError(fmt::format("'{}' is not the name of a file", name));
+    if (!text.is_string()) throw UsageError(fmt::format("'{}' of 'files' must be a text", name));
+    files.emplace_back(name, text.get<std::string>());
+  }
+  return files;
+}
+
 PageCommand parseOpen(const Json& object) {
   Json simple = object;
   OpenSession open;
   if (const auto found = object.find("parameters"); found != object.end()) open.parameters = parseParameters(*found);
   if (const auto found = object.find("camera"); found != object.end() && !found->is_null())
     open.camera = parseCamera(*found);
+  if (const auto found = object.find("files"); found != object.end()) open.files = parseFiles(*found);
+  simple.erase("files");
   simple.erase("parameters");
   simple.erase("camera");
   JsonFields fields(simple.dump(-1, ' ', false, Json::error_handler_t::replace));
   static_cast<void>(fields.text("do"));
-  open.program = fields.text("program");
+  if (open.files.empty()) open.program = fields.text("program");
   open.scene = fields.findText("scene").value_or("");
   if (fields.has("width") || fields.has("height")) {
     open.size = uvec2(fields.count("width"), fields.count("height"));

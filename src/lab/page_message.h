@@ -24,6 +24,8 @@ inline constexpr std::uint32_t kMaxSide = 4096;                       // pixels,
 // Replaces the session. What is unset has the default of the project.
 struct OpenSession {
   std::string program, scene;
+  std::vector<std::pair<std::string, std::string>>
+      files;  // name, text: a program that is not saved; `program` is empty
   std::optional<uvec2> size;
   std::optional<std::uint32_t> samples;
   std::vector<std::pair<std::string, std::string>> parameters;  // name, value as in SetParameter

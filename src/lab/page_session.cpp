@@ -125,7 +125,7 @@ void PageSession::perform(const SessionSupervisor::Actions& actions) {
   if (actions.end) endWorker(actions.start);
   for (const std::string& message : actions.toPage) toPage({false, message});
   if (actions.start) startWorker();
-  if (actions.hold) toWorker(FrameKind::control, controlJson({Control::hold, ""}));
+  if (actions.hold) toWorker(FrameKind::control, controlJson({Control::hold, loadTime_}));
   for (const std::string& message : actions.toWorker) toWorker(FrameKind::text, message);
 }
 
@@ -169,6 +169,7 @@ void PageSession::handleWorker(Worker& worker, const ChannelFrame& frame) {
   if (frame.kind == FrameKind::control) {
     const ControlMessage message = parseControl(frame.data);
     if (message.control == Control::hung) worker.hung = message.message;
+    if (message.control == Control::loads) loadTime_ = message.message;
     supervisor_.workerAlive(now);
     return;
   }

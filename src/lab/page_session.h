@@ -4,6 +4,7 @@
 #ifndef QUINTET_LAB_PAGE_SESSION_H
 #define QUINTET_LAB_PAGE_SESSION_H
 
+#include <array>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -87,6 +88,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   boost::beast::websocket::close_reason reason_;
   boost::asio::steady_timer timer_;
   SessionSupervisor supervisor_;
+  std::string loadTime_;            // message of the last Control::loads
   std::shared_ptr<Worker> worker_;  // null if none runs
 };
 

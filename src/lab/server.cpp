@@ -86,6 +86,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   // Everything that can be rejected without the body is.
   void headerRead(const error_code& error) {
     if (error == http::error::end_of_stream) return shutDown();
+    if (error == http::error::body_limit) return reject(errorResponse(413, "the request is too large"));
     if (error == http::error::header_limit) return reject(errorResponse(431, "the header of the request is too large"));
     if (error) {
       if (error.category() == http::make_error_code(http::error::bad_method).category())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/session_events.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "check/diagnostic_text.h"
 #include "program/help.h"
 #include "render/tone_map/tone_map.h"
+#include "shader/include_resolver.h"
 
 namespace quintet::lab {
 namespace {
@@ -38,6 +40,15 @@ Json listJson(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (list.size() < kMaxListedNames) list.push_back(name);
   return list;
+}
+
+// Programs with a camera of their own ignore navigation.
+bool usesCamera(const program::Program& program) {
+  return std::ranges::any_of(program.files, [](const auto& file) {
+    return std::ranges::any_of(shader::findIncludes(file.second), [](const shader::IncludeDirective& include) {
+      return include.name == "quintet/camera.glsl";
+    });
+  });
 }
 
 Json cameraJson(const Session& session) {
@@ -71,6 +82,7 @@ std::string openedJson(const Session& session, const std::string& program, const
                  {"lights", listJson(session.lightNames())},
                  {"instances", listJson(session.instanceNames())},
                  {"cameras", std::move(cameras)},
+                 {"usesCamera", usesCamera(session.program())},
                  {"animated", session.isAnimated()},
                  {"lastFrame", session.lastFrame()}});
 }

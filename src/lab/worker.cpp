@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/parse.h"
 #include "base/stopwatch.h"
 #include "check/check.h"
 #include "check/diagram/pipeline_model.h"
@@ -32,6 +34,7 @@
 #include "job/engine.h"
 #include "job/interactive/event_json.h"
 #include "job/interactive/session.h"
+#include "job/resolve.h"
 #include "job/source_watcher.h"
 #include "lab/frame_channel.h"
 #include "lab/image_message.h"
@@ -39,6 +42,7 @@
 #include "lab/program_files.h"
 #include "lab/project_folder.h"
 #include "lab/session_events.h"
+#include "lab/unsaved_program.h"
 #include "lab/worker_control.h"
 #include "program/load.h"
 
@@ -162,7 +166,10 @@ class Worker : public job::Observer {
  private:
   // ---- Observer: what the session reports while it works
 
-  void stage(const std::string& text) override { send(messageJson("stage", text, "text")); }
+  void stage(const std::string& text) override {
+    send(messageJson("stage", text, "text"));
+    reportLoad();
+  }
   void warning(const std::string& text) override { send(messageJson("warning", text)); }
   // The device still uses its objects, so the process ends without destroying them.
   void deviceHung(const Diagnostic& diagnostic) override {
@@ -182,8 +189,8 @@ class Worker : public job::Observer {
   // ---- Messages
 
   void handle(const Inbox::Message& message) {
-    if (std::holds_alternative<ControlMessage>(message.content)) {
-      hold_ = true;
+    if (const auto* control = std::get_if<ControlMessage>(&message.content)) {
+      hold_ = control->message;
       return;
     }
     if (const auto* error = std::get_if<PageMessageError>(&message.content)) {
@@ -196,9 +203,32 @@ class Worker : public job::Observer {
   }
 
   void execute(const OpenSession& command, const std::string& /*id*/) {
-    if (!std::exchange(hold_, false)) return open(command);
+    const std::optional<std::string> hold = std::exchange(hold_, std::nullopt);
+    if (!hold) return open(command);
     session_.reset();
     retryAfterSave(command, {});
+    if (retry_ && savedSince(retryWatcher_->watched(), parseNumber<double>(*hold).value_or(0))) open(command);
+  }
+
+  // A user can have corrected the program while the worker before this one still ran.
+  static bool savedSince(const job::WatchList& list, double seconds) {
+    const auto isNew = [&](const fs::path& file) {
+      std::error_code error;
+      const fs::file_time_type time = fs::last_write_time(file, error);
+      return !error && secondsSince1970(std::chrono::file_clock::to_sys(time)) > seconds;
+    };
+    if (std::ranges::any_of(list.files, isNew)) return true;
+    for (const fs::path& folder : list.folders) {
+      std::error_code error;
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+        if (job::isProgramSource(entry.path().filename()) && isNew(entry.path())) return true;
+    }
+    return false;
+  }
+
+  template <class Time>
+  static double secondsSince1970(Time time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
   }
 
   void execute(const interactive::Command& command, const std::string& /*id*/) {
@@ -283,6 +313,7 @@ class Worker : public job::Observer {
   // ---- Opening
 
   void open(const OpenSession& command) {
+    reportLoad();
     retry_.reset();
     session_.reset();
     progress_ = {};
@@ -304,14 +335,15 @@ class Worker : public job::Observer {
   }
 
   void start(const OpenSession& command) {
-    loadableName(project_, command.program);  // throws
+    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(command.files);
+    if (!unsaved_) loadableName(project_, command.program);  // throws
     interactive::SessionRequest request;
-    request.program = command.program;
+    request.program = unsaved_ ? unsaved_->folder().string() : command.program;
     if (!command.scene.empty()) {
       project_.locate(command.scene);  // throws
       request.render.scene = command.scene;
     }
-    const program::Program loaded = program::loadProgram(command.program);
+    const program::Program loaded = program::loadProgram(request.program);
     request.render.size = command.size.value_or(settings_.defaults.size);
     const bool frames = loaded.accumulation == program::Accumulation::program;
     request.render.limits.samples = command.samples.value_or(frames ? kEndlessFrames : settings_.defaults.samples);
@@ -378,7 +410,7 @@ class Worker : public job::Observer {
 
   void retryAfterSave(const OpenSession& command, const std::vector<Diagnostic>& diagnostics) {
     job::WatchList files;
-    if (!isBuiltIn(command.program)) files.addProgram(command.program);
+    if (command.files.empty() && !isBuiltIn(command.program)) files.addProgram(command.program);
     files.addDiagnosed(diagnostics);
     if (files.files.empty() && files.folders.empty()) return;
     retryWatcher_.emplace().watch(std::move(files));
@@ -423,6 +455,7 @@ class Worker : public job::Observer {
     if (graphOutdated_ && progress_.factor == 1 && progress_.samples > 0 && !isMoving()) describeGraph("");
   }
 
+  bool countsFrames() const { return session_->program().accumulation == program::Accumulation::program; }
   bool isMoving() const { return clock_.seconds() - lastCommand_ < kMovingSeconds; }
 
   void report(const std::vector<interactive::Event>& events) {
@@ -449,10 +482,11 @@ class Worker : public job::Observer {
     }
   }
 
-  // While something moves, each image is sent as soon as the page has shown the ones before. At rest, some are sent
+  // While something moves or frames play, each image is sent as soon as the page has shown the ones before. At rest, some are sent
   // without loss, and always the last one.
   void sendImage() {
-    const bool atRest = progress_.factor == 1 && !isMoving();
+    const bool plays = countsFrames() && !paused_ && !progress_.complete;
+    const bool atRest = progress_.factor == 1 && !isMoving() && !plays;
     if (!imagePending_ && !(lossyShown_ && atRest)) return;
     if (progress_.samples == 0 || sent_ - confirmed_ >= kMaxUnconfirmed) return;
     const double now = clock_.seconds();
@@ -479,9 +513,7 @@ class Worker : public job::Observer {
     if (!progress_.complete && now - lastStatistics_ < kStatisticsSeconds) return;
     lastStatistics_ = now;
     reported_ = progress_;
-    Statistics statistics{.samples = progress_.samples,
-                          .frames = session_->program().accumulation == program::Accumulation::program,
-                          .seconds = progress_.seconds};
+    Statistics statistics{.samples = progress_.samples, .frames = countsFrames(), .seconds = progress_.seconds};
     if (progress_.seconds > 0)
       statistics.raysPerSecond = static_cast<double>(session_->rays().rays) / progress_.seconds;
     if (!statistics.frames) {
@@ -510,6 +542,11 @@ class Worker : public job::Observer {
     showed_ = std::move(state);
   }
 
+  void reportLoad() {
+    const double now = secondsSince1970(std::chrono::system_clock::now());
+    channel_.write(FrameKind::control, controlJson({Control::loads, fmt::format("{}", now)}));
+  }
+
   void reportAlive() {
     const double now = clock_.seconds();
     if (now - lastAlive_ < kAliveSeconds) return;
@@ -522,11 +559,12 @@ class Worker : public job::Observer {
   const ProjectFolder project_;
   const Stopwatch clock_;
   std::unique_ptr<job::Engine> engine_;
+  std::unique_ptr<UnsavedProgram> unsaved_;  // that the session shows
   std::unique_ptr<interactive::Session> session_;
   OpenSession opened_;                // of the session
   std::optional<OpenSession> retry_;  // failed; repeated when one of the files is saved
   std::optional<job::SourceWatcher> retryWatcher_;
-  bool hold_ = false;  // Control::hold
+  std::optional<std::string> hold_;  // message of Control::hold
   bool paused_ = false;
   std::uint64_t batches_ = 0;  // to render while paused
   std::uint64_t restarts_ = 0;

@@ -26,7 +26,8 @@ WorkerSettings parseSettings(std::string_view json);  // throws Error
 
 // What else a control message says.
 enum class Control {
-  hold,   // to the worker: the next `open` waits until a file of its program is saved
+  hold,  // to the worker: the next `open` waits until a file of its program is saved; `message` is that of the last `loads`
+  loads,  // from the worker: it reads the program; `message` is the time, seconds since 1970
   alive,  // from the worker: it has finished what it did
   hung,   // from the worker: a launch did not end in time; `message` says which
 };

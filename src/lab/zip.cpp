@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 

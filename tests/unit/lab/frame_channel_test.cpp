@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/frame_channel.h"
 
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 
 #include "base/error.h"

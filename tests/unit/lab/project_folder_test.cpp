@@ -3,7 +3,10 @@
 
 #include <sys/stat.h>
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include <gmock/gmock.h>
 
