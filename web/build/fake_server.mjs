@@ -196,7 +196,7 @@ class FakeSession {
     this.state.frames = description.accumulation === "program";
     this.state.output = description.outputs[0].name;
     for (const parameter of description.parameters) this.state.parameters[parameter.name] = command.parameters?.[parameter.name] ?? parameter.default;
-    this.event("opened", { program: command.program, scene: "", device: "llvmpipe (fake server)", description, materials: [], lights: [], instances: [], cameras: [], animated: false, lastFrame: 0, usesCamera: description.accumulation !== "program" });
+    this.event("opened", { program: command.program, scene: "", device: "llvmpipe (fake server)", description, materials: [], lights: [], instances: [], cameras: [], animated: false, lastFrame: 0 });
     this.event("state", this.state);
     this.event("done", {}, command.id);
     await this.render();

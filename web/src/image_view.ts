@@ -15,6 +15,7 @@ export class ImageView {
   private readonly overlay = h("div", { class: "image-overlay", hidden: true, role: "status" });
   private size = { width: 640, height: 360 }; // of the session
   private newest = 0;
+  private shown = 0; // images
   private pixel: { x: number; y: number } | undefined;
   latest: ImageMessage | undefined;
 
@@ -63,17 +64,19 @@ export class ImageView {
       }
       this.context.drawImage(bitmap, 0, 0);
       this.layout();
+      this.canvas.dataset["shown"] = String(++this.shown); // for tests
     }
     bitmap.close();
     this.received(image.number);
   }
 
-  // A message over the image; empty hides it. `dim`: the image does not show the current program.
-  setOverlay(content: Node | string, dim: boolean): void {
+  // A message over the image; empty hides it. `dim`: the image does not show the current program; `blank`: there is none.
+  setOverlay(content: Node | string, dim: boolean, blank = false): void {
     const empty = content === "";
     this.overlay.hidden = empty;
     this.overlay.replaceChildren(content);
     this.stage.classList.toggle("dim", dim);
+    this.stage.classList.toggle("blank", blank);
   }
 
   mark(pixel: { x: number; y: number } | undefined): void {

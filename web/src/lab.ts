@@ -26,6 +26,7 @@ import { setThemeChoice, type Theme, themeChoice } from "./theme";
 import { ViewPanel } from "./view_panel";
 import { baseName, type EditorDocument, type SourceFile, Workspace } from "./workspace";
 
+const kExplainedFrames = 300; // an explanation of a later frame has to be asked for
 const kPollInterval = 2000; // ms between looks at files that other programs may have changed
 const kHoverDelay = 180; // ms of rest after which the surface under the pointer is read
 
@@ -82,7 +83,7 @@ export class Lab {
       onOpened: (opened) => {
         this.workspace.parameters = opened.description.parameters;
         this.image.reset();
-        this.view.showOpened(opened);
+        this.view.showOpened(opened, this.usesCamera());
         replace(this.output, opened.description.outputs.map((output) => h("option", { value: output.name, title: output.help }, output.kind === "heat" ? `${output.name} (heat map)` : output.name)));
         this.showScenes();
         this.showStatus();
@@ -648,7 +649,8 @@ export class Lab {
   // Image
 
   private usesCamera(): boolean {
-    return this.session.opened?.usesCamera !== false && this.session.state?.camera !== null;
+    if (!this.session.state || this.session.state.camera === null) return false;
+    return this.workspace.files.some((file) => /\bcameraRay\s*\(|\bframe\s*\.\s*camera\b/.test(this.workspace.textOf(file)));
   }
 
   private eyeParameter(): { name: string; value: [number, number, number] } | undefined {
@@ -660,6 +662,8 @@ export class Lab {
   private async selectPixel(x: number, y: number): Promise<void> {
     this.pixel = { x, y };
     this.image.mark(this.pixel);
+    // The frame that is shown, unless rendering all frames before it takes long.
+    if (this.session.state?.frames) this.pixelPanel.sampleNumber = this.shownSamples <= kExplainedFrames ? Math.max(0, this.shownSamples - 1) : 0;
     if (this.side.selected !== "pixel") this.selectSide("pixel");
     if (this.pixelPanel.printing) this.setPrint(true);
     const request = ++this.pixelRequest;
@@ -842,16 +846,19 @@ export class Lab {
     }
     replace(this.linkState, h("span", { class: `dot ${dot}`, "aria-hidden": "true" }), label);
 
-    if (session.connection === "refused" || session.connection === "full") this.image.setOverlay(message("No connection", session.connectionMessage, connect()), true);
-    else if (session.connection === "lost") this.image.setOverlay(message("The server does not answer", "The page connects again as soon as it runs. Edits stay here until they can be saved.", connect()), true);
-    else if (worker?.state === "hung") this.image.setOverlay(message("The shader takes too long", worker.message, restart()), true);
-    else if (worker?.state === "crashed") this.image.setOverlay(message("The render process crashed", `${worker.message}. It starts again.`), true);
-    else if (worker?.state === "waiting") this.image.setOverlay(message("The render process has stopped", worker.message || "It starts again after the next edit.", restart()), true);
+    if (session.connection === "refused" || session.connection === "full") this.image.setOverlay(message("No connection", session.connectionMessage, connect()), true, !session.hasImage);
+    else if (session.connection === "lost") this.image.setOverlay(message("The server does not answer", "The page connects again as soon as it runs. Edits stay here until they can be saved.", connect()), true, !session.hasImage);
+    else if (worker?.state === "crashed" || worker?.state === "hung" || worker?.state === "waiting") {
+      const cause = session.cause;
+      const title = cause?.state === "hung" ? "The shader takes too long" : cause ? "The render process crashed" : "The render process has stopped";
+      const sentences = [cause?.message, worker.state === "waiting" ? worker.message : ""].filter(Boolean).map((text) => `${text!.charAt(0).toUpperCase()}${text!.slice(1)}.`);
+      this.image.setOverlay(message(title, sentences.join(" "), restart()), true, !session.hasImage);
+    }
     else if (worker?.state === "idle") this.image.setOverlay(message("The render process has ended after a pause", "The next change starts it again.", restart()), false);
-    else if (session.failure) this.image.setOverlay(message("The render stopped", session.failure, restart()), true);
-    else if (errors.length > 0 && !session.hasImage) this.image.setOverlay(message("The program has errors", countText(this.diagnostics)), true);
+    else if (errors.length > 0 && !session.hasImage) this.image.setOverlay(message("The program has errors", countText(this.diagnostics)), true, !session.hasImage);
     else if (errors.length > 0) this.image.setOverlay(message("", `${countText(errors)}: the image shows the last version without errors`), this.outdated);
-    else if (!session.hasImage) this.image.setOverlay(message("", session.connection === "connecting" ? "Connecting…" : session.stage ? `${session.stage.charAt(0).toUpperCase()}${session.stage.slice(1)}…` : "Rendering…"), true);
+    else if (session.failure) this.image.setOverlay(message("The render stopped", session.failure, restart()), true, !session.hasImage);
+    else if (!session.hasImage) this.image.setOverlay(message("", session.connection === "connecting" ? "Connecting…" : session.stage ? `${session.stage.charAt(0).toUpperCase()}${session.stage.slice(1)}…` : "Rendering…"), true, !session.hasImage);
     else this.image.setOverlay("", false);
     this.showFacts();
   }

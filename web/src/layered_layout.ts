@@ -118,7 +118,7 @@ export function layoutGraph(sizes: readonly Size[], edges: readonly GraphEdge[])
         at = y[i]! + boxes[i]!.height + kRowGap;
       });
     }
-  const top = Math.min(0, ...y);
+  const top = y.length > 0 ? Math.min(...y) : 0;
   const x: number[] = [];
   let left = 0;
   for (const column of columns) {

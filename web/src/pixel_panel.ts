@@ -70,6 +70,10 @@ export class PixelPanel {
     return this.sample.checkValidity() ? this.sample.valueAsNumber : 0;
   }
 
+  set sampleNumber(sample: number) {
+    this.sample.value = String(sample);
+  }
+
   get printing(): boolean {
     return this.printBox.checked;
   }

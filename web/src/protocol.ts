@@ -118,7 +118,6 @@ export interface Opened {
   cameras: string[];
   animated: boolean;
   lastFrame: number;
-  usesCamera?: boolean;
 }
 
 export interface Statistics {

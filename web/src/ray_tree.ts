@@ -141,7 +141,7 @@ function rowsOf(events: readonly ExplanationEvent[], counter: Counter): TreeRow[
     const hidden = new Set([...kHeading, ...(kInTitle[event.type] ?? [])]);
     const facts: [string, string][] = [];
     if (event.stage && !isRay && event.type !== "call") facts.push(["shader", event.stage]);
-    for (const [name, value] of Object.entries(event)) if (!hidden.has(name)) facts.push([fieldName(name), formatValue(value)]);
+    for (const [name, value] of Object.entries(event)) if (!hidden.has(name) && value !== "") facts.push([fieldName(name), formatValue(value)]);
     const shared = (event.events ?? []).filter((inner) => inner.type === "payload" || inner.type === "data");
     const before = shared.find((inner) => inner["when"] === "before");
     if (before) facts.push(...payloadFacts(before, shared.find((inner) => inner["when"] === "after")));

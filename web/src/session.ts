@@ -33,6 +33,8 @@ export class Session {
   connection: ConnectionState = "connecting";
   connectionMessage = "";
   worker: { state: WorkerState; message: string; restarts: number } | undefined;
+  // Why the worker waits.
+  cause: { state: WorkerState; message: string } | undefined;
   stage = ""; // what the worker does before the first image
   failure = ""; // the render stopped
   opened: Opened | undefined;
@@ -157,7 +159,11 @@ export class Session {
     switch (event.event) {
       case "worker":
         this.worker = { state: event.state, message: event.message, restarts: event.restarts };
+        if (event.state === "crashed" || event.state === "hung") this.cause = { state: event.state, message: event.message };
+        else if (event.state !== "waiting") this.cause = undefined;
         if (event.state === "started") this.failure = "";
+        // It can start again before anyone sees the state.
+        if (event.state === "crashed") handlers.onMessage(`The render process crashed: ${event.message}`, "error");
         handlers.onStatus();
         break;
       case "stage":

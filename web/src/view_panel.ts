@@ -92,11 +92,11 @@ export class ViewPanel {
     this.scene.value = this.sceneNow === ofProgram ? "" : this.sceneNow;
   }
 
-  showOpened(opened: Opened): void {
+  showOpened(opened: Opened, usesCamera: boolean): void {
     this.frameRow.hidden = !opened.animated;
     this.frame.max = String(Math.max(1, Math.ceil(opened.lastFrame)));
     replace(this.camera, h("option", { value: "" }, "first"), opened.cameras.map((name) => h("option", { value: name }, name)));
-    this.cameraRow.hidden = opened.usesCamera === false;
+    this.cameraRow.hidden = !usesCamera;
   }
 
   showState(state: SessionState, usesCamera: boolean): void {

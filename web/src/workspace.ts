@@ -163,8 +163,11 @@ export class Workspace {
     const generation = this.generation;
     this.saving = this.saving.then(async () => {
       if (generation !== this.generation) return;
-      if (this.program?.builtIn && this.files.some((file) => file.status === "changed") && !(await this.makeCopy())) return;
+      const copies = this.program?.builtIn === true && this.files.some((file) => file.status === "changed");
+      if (copies && !(await this.makeCopy())) return;
       for (const file of this.files) if (file.status === "changed" && generation === this.generation) await this.saveFile(file);
+      // The session opens the copy with the edits.
+      if (copies && generation === this.generation) this.handlers.onRenamed(this.program!.name);
     });
     return this.saving;
   }
@@ -173,7 +176,10 @@ export class Workspace {
   async ensureCopy(): Promise<boolean> {
     if (!this.program?.builtIn) return this.program !== undefined;
     await this.saving;
-    return !this.program.builtIn || this.makeCopy();
+    if (!this.program.builtIn) return true;
+    if (!(await this.makeCopy())) return false;
+    this.handlers.onRenamed(this.program.name);
+    return true;
   }
 
   // Reads the files that have changed on disk.
@@ -312,13 +318,14 @@ export class Workspace {
       const name = file.path.startsWith(prefix) ? file.path.slice(prefix.length) : baseName(file.path);
       const copied = copy.files.find((candidate) => candidate.path === `${folder}/${name}`);
       if (!copied) continue;
+      // The session names the copy only from its next diagnostics on.
+      this.diagnostics = this.diagnostics.map((diagnostic) => (diagnostic.file === file.path ? { ...diagnostic, file: copied.path } : diagnostic));
       file.path = copied.path;
       file.hash = copied.hash;
       file.base = copied.text;
     }
     this.program = { ...copy };
     this.handlers.notify(`The program was copied to ${folder}`, "info");
-    this.handlers.onRenamed(folder);
     return true;
   }
 
