@@ -51,7 +51,7 @@ configure: setup
 	@cmake --preset $(PRESET) -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
 
 setup: ## Install missing packages (scripts/setup.sh --plan only lists them)
-	@bash scripts/setup.sh build viewer test
+	@bash scripts/setup.sh build viewer lab test
 
 bench: build ## Measure rays per second relative to the limit of the device (BENCH_FLAGS)
 	@$(BUILD)/bin/quintet_make_scenes $(SCENES)

@@ -14,3 +14,26 @@ function(quintet_embed TARGET SYMBOL ROOT)
   set_source_files_properties(${out} PROPERTIES COMPILE_OPTIONS "-Wno-overlength-strings")
   target_sources(${TARGET} PRIVATE ${out})
 endfunction()
+
+# quintet_embed_folders(TARGET SYMBOL ROOT FOLDERS folder… [DEPENDS file…]) does the same for all files of folders below
+# ROOT ("." is ROOT itself), recursively and as they are when the target is built: the assembler copies them, which is
+# faster for images and pages. A folder can be missing.
+function(quintet_embed_folders TARGET SYMBOL ROOT)
+  cmake_parse_arguments(ARG "" "" "FOLDERS;DEPENDS" ${ARGN})
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/${SYMBOL}.cpp)
+  set(files)
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${ROOT}/${folder}/*)
+    list(APPEND files ${found})
+  endforeach()
+  add_custom_command(
+    OUTPUT ${out}
+    COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DSYMBOL=${SYMBOL} -DROOT=${ROOT} "-DFOLDERS=${ARG_FOLDERS}"
+            -P ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
+    DEPENDS ${files} ${ARG_DEPENDS} ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
+    COMMENT "Embedding ${SYMBOL}"
+    VERBATIM)
+  # ccache does not know the files that the assembler reads.
+  set_source_files_properties(${out} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  target_sources(${TARGET} PRIVATE ${out})
+endfunction()

@@ -219,6 +219,19 @@ std::map<std::string, std::string> shortNames() {
                   name, full.empty() ? "" : fmt::format(" (did you mean '{}'?)", full)));
 }
 
+// "<programs/lessons/05_shadow>" → "lessons/05_shadow"; empty for any other text.
+std::string namedBuiltIn(const std::string& name) {
+  constexpr std::string_view kBegin = "<programs/";
+  if (!name.starts_with(kBegin) || !name.ends_with('>')) return {};
+  return name.substr(kBegin.size(), name.size() - kBegin.size() - 1);
+}
+
+Program loadBuiltIn(const std::string& name) {
+  if (std::optional<Program> program = findBuiltInLecture(name)) return std::move(*program);
+  if (std::optional<Program> program = findBuiltInFolder(name)) return std::move(*program);
+  failUnknown(name);
+}
+
 }  // namespace
 
 std::vector<std::string> builtInPrograms() {
@@ -233,6 +246,7 @@ std::vector<std::string> builtInPrograms() {
 }
 
 Program loadProgram(const std::string& nameOrPath) {
+  if (const std::string name = namedBuiltIn(nameOrPath); !name.empty()) return loadBuiltIn(name);
   if (std::optional<Program> program = findLecture(nameOrPath)) return std::move(*program);
   if (std::optional<Program> program = findFolder(nameOrPath)) return std::move(*program);
   std::error_code ignored;

@@ -36,6 +36,7 @@ int infoCommand(Arguments);
 int compareCommand(Arguments);
 int benchCommand(Arguments);
 int viewCommand(Arguments);
+int labCommand(Arguments);
 int helpCommand(Arguments);
 
 OptionTable renderOptions();
@@ -50,6 +51,7 @@ OptionTable infoOptions();
 OptionTable compareOptions();
 OptionTable benchOptions();
 OptionTable viewOptions();
+OptionTable labOptions();
 OptionTable helpOptions();
 
 }  // namespace quintet::cli

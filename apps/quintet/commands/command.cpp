@@ -13,6 +13,7 @@ std::span<const Command> commands() {
       Command{"merge", "join parts of a render", mergeCommand, mergeOptions},
       Command{"run", "run a program: your own or a built-in one", runCommand, runOptions, true},
       Command{"view", "show a scene in a window, or run a scripted session", viewCommand, viewOptions, true},
+      Command{"lab", "write shaders in a browser beside a live image", labCommand, labOptions},
       Command{"new", "create a program that renders at once", newCommand, newOptions},
       Command{"check", "compile and check programs, without rendering", checkCommand, checkOptions, true},
       Command{"explain", "explain a diagnostic and how to fix it", explainCommand, explainOptions},

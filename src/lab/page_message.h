@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of a page as data (docs/design/lab-protocol.md, "Commands"): those of the lab, and those of sessions
+// (job/interactive/command_json.h).
+#ifndef QUINTET_LAB_PAGE_MESSAGE_H
+#define QUINTET_LAB_PAGE_MESSAGE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/math.h"
+#include "job/interactive/command.h"
+
+namespace quintet::lab {
+
+inline constexpr std::size_t kMaxPageMessage = std::size_t{1} << 20;  // bytes
+inline constexpr std::uint32_t kMaxSide = 4096;                       // pixels, of the image
+
+// Replaces the session. What is unset has the default of the project.
+struct OpenSession {
+  std::string program, scene;
+  std::vector<std::pair<std::string, std::string>>
+      files;  // name, text: a program that is not saved; `program` is empty
+  std::optional<uvec2> size;
+  std::optional<std::uint32_t> samples;
+  std::vector<std::pair<std::string, std::string>> parameters;  // name, value as in SetParameter
+  std::string output;
+  double exposure = 0;
+  std::string toneMap = "default";
+  std::optional<float> frame;
+  std::optional<job::CameraRequest> camera;
+  std::uint32_t seed = 0;
+};
+struct ImageReceived {
+  std::uint32_t image = 0;
+};
+struct PauseSession {
+  bool on = true;
+};
+// Pauses, and renders this many further frames or batches of samples.
+struct AdvanceFrames {
+  std::uint32_t count = 1;
+};
+struct PickPixel {
+  uvec2 pixel{0};
+};
+struct ReadValue {
+  uvec2 pixel{0};
+};
+struct ExplainSample {
+  uvec2 pixel{0};
+  std::uint32_t sample = 0;
+};
+struct DescribeGraph {};
+struct RestartWorker {};  // handled by the server
+
+using PageCommand = std::variant<OpenSession, job::interactive::Command, ImageReceived, PauseSession, AdvanceFrames,
+                                 PickPixel, ReadValue, ExplainSample, DescribeGraph, RestartWorker>;
+
+struct PageMessage {
+  PageCommand command;
+  std::string id;  // JSON text of the member "id"; empty if it is missing
+};
+
+// A message with an error, and its id, so that the page gets an answer.
+struct PageMessageError {
+  std::string message;
+  std::string id;
+};
+
+// Checks types and ranges; names are checked by the worker.
+std::variant<PageMessage, PageMessageError> parsePageMessage(std::string_view text);
+
+// The member "do" of an object; nothing if the text is no object with such a text.
+std::optional<std::string> commandName(std::string_view text);
+
+}  // namespace quintet::lab
+#endif

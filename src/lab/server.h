@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The server of the lab: accepts connections, checks who may send requests (access.h), answers them (api.h, page.h), and
+// gives each WebSocket a session with a worker of its own (page_session.h). It has one thread and never waits for a
+// device.
+#ifndef QUINTET_LAB_SERVER_H
+#define QUINTET_LAB_SERVER_H
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "base/embedded.h"
+#include "lab/api.h"
+#include "lab/project_folder.h"
+
+namespace quintet::lab {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  // IP address to which it listens
+  std::uint16_t port = 0;             // 0 means any free one
+  std::string device;                 // of the workers: job::EngineOptions::device
+  double idleSeconds = 600;           // after which an unused worker ends
+  std::string token;                  // empty means a random one
+  std::filesystem::path worker;       // executable that runs workers (worker_process.h)
+  std::span<const EmbeddedFile> page;
+  LabDefaults defaults;
+};
+
+class Server {
+ public:
+  // Listens. Throws UsageError for an invalid address, Error if the port is not available.
+  Server(const ProjectFolder& project, ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const;
+  std::string url() const;  // with the token
+
+  // Works until SIGINT, SIGTERM, or stop() from another thread. All sessions and their workers have then ended.
+  void run();
+  void stop();
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace quintet::lab
+#endif

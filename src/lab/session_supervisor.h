@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decides what happens with the worker of a session: when it starts, whether it starts again after its end, and with
+// which commands. Pure decisions on given times; page_session.h carries them out.
+#ifndef QUINTET_LAB_SESSION_SUPERVISOR_H
+#define QUINTET_LAB_SESSION_SUPERVISOR_H
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quintet::lab {
+
+inline constexpr double kCrashSeconds = 10;  // a second crash within this time would repeat forever
+inline constexpr double kStuckSeconds = 60;  // beyond the time limit of a launch: compiling can take long
+
+// How a worker ended.
+struct WorkerEnd {
+  int signal = 0;                   // that ended it; 0 if it has exited
+  int status = 0;                   // exit status
+  std::optional<std::string> hung;  // Control::hung, or a text for a worker that did not answer
+};
+
+class SessionSupervisor {
+ public:
+  struct Limits {
+    double timeout = 30;       // seconds that a launch may take
+    double idleSeconds = 600;  // without a command of the page, after which the worker ends
+  };
+  explicit SessionSupervisor(const Limits& limits) : limits_(limits) {}
+
+  // What to send to the page and to the worker, and whether to start it first.
+  struct Actions {
+    bool start = false;                 // a new worker
+    bool end = false;                   // the worker that runs
+    std::vector<std::string> toPage;    // JSON
+    std::vector<std::string> toWorker;  // JSON of the page, after `hold`
+    bool hold = false;                  // Control::hold before the first of them
+  };
+
+  Actions connected(double now);
+  Actions pageSent(double now, std::string_view message);
+  void workerSent(double now, std::string_view message);  // FrameKind::text
+  void workerAlive(double now) { lastAlive_ = now; }
+  Actions workerEnded(double now, const WorkerEnd& end);
+  // Call it about once per second.
+  Actions tick(double now);
+
+ private:
+  enum class State { running, ended };
+
+  Actions started(double now, bool hold, const std::string& state, const std::string& message);
+  std::string resumed(bool keepParameters) const;
+
+  const Limits limits_;
+  State state_ = State::ended;
+  unsigned restarts_ = 0;
+  bool stuck_ = false;          // the worker was ended because it did not answer
+  bool keepParameters_ = true;  // for the next worker
+  double lastPage_ = 0, lastAlive_ = 0;
+  std::optional<double> lastCrash_;
+  std::string open_;   // last command `open` of the page; empty before the first
+  std::string shown_;  // last event `state` since it
+};
+
+}  // namespace quintet::lab
+#endif

@@ -1,0 +1,595 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/worker.h"
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parse.h"
+#include "base/stopwatch.h"
+#include "check/check.h"
+#include "check/diagram/pipeline_model.h"
+#include "check/scene_facts.h"
+#include "gpu/error.h"
+#include "io/codec.h"
+#include "io/jpeg_encoder.h"
+#include "job/device_limits.h"
+#include "job/engine.h"
+#include "job/interactive/event_json.h"
+#include "job/interactive/session.h"
+#include "job/resolve.h"
+#include "job/source_watcher.h"
+#include "lab/frame_channel.h"
+#include "lab/image_message.h"
+#include "lab/page_message.h"
+#include "lab/program_files.h"
+#include "lab/project_folder.h"
+#include "lab/session_events.h"
+#include "lab/unsaved_program.h"
+#include "lab/worker_control.h"
+#include "program/load.h"
+
+namespace quintet::lab {
+namespace {
+
+namespace fs = std::filesystem;
+namespace interactive = job::interactive;
+
+constexpr double kStepSeconds = 0.05;
+constexpr double kWatchSeconds = 0.02;        // between checks for saved files
+constexpr double kMovingSeconds = 0.3;        // after a command, images of reduced resolution are not interrupted
+constexpr double kLosslessSeconds = 0.25;     // between two images at rest
+constexpr double kStatisticsSeconds = 0.5;    // between two reports
+constexpr double kAliveSeconds = 1.0;         // between two messages to the server
+constexpr std::uint32_t kMaxUnconfirmed = 2;  // images that the page has not shown yet
+constexpr int kJpegQuality = 85;
+constexpr std::uint32_t kEndlessFrames = 1u << 24;  // of a program that counts frames
+
+// Commands that keep the samples do not interrupt a batch.
+bool isUrgent(const PageCommand& command) {
+  if (std::holds_alternative<ImageReceived>(command) || std::holds_alternative<ReadValue>(command)) return false;
+  const auto* edit = std::get_if<interactive::Command>(&command);
+  return !edit || !(std::holds_alternative<interactive::SetExposure>(*edit) ||
+                    std::holds_alternative<interactive::SetToneMap>(*edit) ||
+                    std::holds_alternative<interactive::EndDrag>(*edit));
+}
+
+// Messages of the server, which a thread of its own receives.
+class Inbox {
+ public:
+  explicit Inbox(FrameChannel& channel) : channel_(channel), thread_([this] { receive(); }) {}
+  ~Inbox() { thread_.join(); }  // after the server has closed the socket
+  Inbox(const Inbox&) = delete;
+  Inbox& operator=(const Inbox&) = delete;
+
+  struct Message {
+    std::variant<PageMessage, PageMessageError, ControlMessage> content;
+  };
+
+  // Waits for messages, up to `seconds`.
+  std::vector<Message> take(double seconds) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return closed_ || !messages_.empty(); });
+    urgent_ = false;
+    return std::exchange(messages_, {});
+  }
+  bool closed() const {
+    const std::lock_guard lock(mutex_);
+    return closed_;
+  }
+  bool hasUrgent() const {
+    const std::lock_guard lock(mutex_);
+    return closed_ || urgent_;
+  }
+
+ private:
+  void receive() {
+    while (const std::optional<ChannelFrame> frame = channel_.read()) add(*frame);
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    changed_.notify_one();
+  }
+
+  void add(const ChannelFrame& frame) {
+    Message message;
+    bool urgent = false;
+    if (frame.kind == FrameKind::control) {
+      message.content = parseControl(frame.data);
+    } else {
+      const auto parsed = parsePageMessage(frame.data);
+      if (const auto* command = std::get_if<PageMessage>(&parsed)) {
+        urgent = isUrgent(command->command);
+        message.content = *command;
+      } else {
+        message.content = std::get<PageMessageError>(parsed);
+      }
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      messages_.push_back(std::move(message));
+      urgent_ = urgent_ || urgent;
+    }
+    changed_.notify_one();
+  }
+
+  FrameChannel& channel_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Message> messages_;
+  bool closed_ = false, urgent_ = false;
+  std::thread thread_;  // last: it uses the members above
+};
+
+class Worker : public job::Observer {
+ public:
+  Worker(FrameChannel& channel, WorkerSettings settings)
+      : channel_(channel), settings_(std::move(settings)), project_(settings_.folder), inbox_(channel) {}
+
+  int run() {
+    openEngine();
+    while (!inbox_.closed()) {
+      const double wait =
+          session_ && !isResting() ? std::min(kWatchSeconds, session_->secondsUntilWork()) : kWatchSeconds;
+      for (const Inbox::Message& message : inbox_.take(wait)) handle(message);
+      if (retry_ && retryWatcher_->pending()) {
+        retryWatcher_->wait(0);
+        const OpenSession again = *retry_;
+        guarded("", [&] { open(again); });
+      }
+      if (session_) guarded("", [&] { work(); });
+      reportState();
+      reportAlive();
+    }
+    // Destroying the device takes time, and nothing needs it: the process ends.
+    std::_Exit(0);
+  }
+
+ private:
+  // ---- Observer: what the session reports while it works
+
+  void stage(const std::string& text) override {
+    send(messageJson("stage", text, "text"));
+    reportLoad();
+  }
+  void warning(const std::string& text) override { send(messageJson("warning", text)); }
+  // The device still uses its objects, so the process ends without destroying them.
+  void deviceHung(const Diagnostic& diagnostic) override {
+    channel_.write(FrameKind::control, controlJson({Control::hung, diagnostic.text}));
+    std::_Exit(kHungStatus);
+  }
+
+  void send(const std::string& json) { channel_.write(FrameKind::text, json); }
+
+  void openEngine() {
+    engine_ = std::make_unique<job::Engine>(
+        job::EngineOptions{.device = settings_.device, .log = [this](LogLevel level, const std::string& text) {
+                             if (level == LogLevel::warning) send(messageJson("warning", text));
+                           }});
+  }
+
+  // ---- Messages
+
+  void handle(const Inbox::Message& message) {
+    if (const auto* control = std::get_if<ControlMessage>(&message.content)) {
+      hold_ = control->message;
+      return;
+    }
+    if (const auto* error = std::get_if<PageMessageError>(&message.content)) {
+      send(withId(messageJson("error", error->message), error->id));
+      return;
+    }
+    const auto& [command, id] = std::get<PageMessage>(message.content);
+    const bool answered = guarded(id, [&] { std::visit([&](const auto& value) { execute(value, id); }, command); });
+    if (answered && !id.empty()) send(withId(R"({"event":"done"})", id));
+  }
+
+  void execute(const OpenSession& command, const std::string& /*id*/) {
+    const std::optional<std::string> hold = std::exchange(hold_, std::nullopt);
+    if (!hold) return open(command);
+    session_.reset();
+    retryAfterSave(command, {});
+    if (retry_ && savedSince(retryWatcher_->watched(), parseNumber<double>(*hold).value_or(0))) open(command);
+  }
+
+  // A user can have corrected the program while the worker before this one still ran.
+  static bool savedSince(const job::WatchList& list, double seconds) {
+    const auto isNew = [&](const fs::path& file) {
+      std::error_code error;
+      const fs::file_time_type time = fs::last_write_time(file, error);
+      return !error && secondsSince1970(std::chrono::file_clock::to_sys(time)) > seconds;
+    };
+    if (std::ranges::any_of(list.files, isNew)) return true;
+    for (const fs::path& folder : list.folders) {
+      std::error_code error;
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+        if (job::isProgramSource(entry.path().filename()) && isNew(entry.path())) return true;
+    }
+    return false;
+  }
+
+  template <class Time>
+  static double secondsSince1970(Time time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
+  }
+
+  void execute(const interactive::Command& command, const std::string& /*id*/) {
+    if (const auto* program = std::get_if<interactive::SetProgram>(&command)) return openProgram(program->name);
+    interactive::Session& session = requireSession();
+    checkFiles(command);
+    if (!std::holds_alternative<interactive::EndDrag>(command)) lastCommand_ = clock_.seconds();
+    session.apply(command);
+  }
+
+  void execute(const ImageReceived& command, const std::string& /*id*/) {
+    confirmed_ = std::clamp(command.image, confirmed_, sent_);
+  }
+
+  void execute(const PauseSession& command, const std::string& /*id*/) { paused_ = command.on; }
+  void execute(const DescribeGraph& /*command*/, const std::string& id) { describeGraph(id); }
+  void execute(const RestartWorker& /*command*/, const std::string& /*id*/) {}  // by the server
+
+  void execute(const AdvanceFrames& command, const std::string& /*id*/) {
+    requireSession();
+    paused_ = true;
+    batches_ += command.count;
+  }
+
+  void execute(const PickPixel& command, const std::string& id) {
+    interactive::Session& session = requireSession();
+    const auto picked = session.pick(command.pixel);
+    send(withId(interactive::pickedJson(command.pixel, picked, session.instanceNames(), session.materialNames()), id));
+  }
+
+  void execute(const ReadValue& command, const std::string& id) {
+    interactive::Session& session = requireSession();
+    const uvec2 size = session.state().size;
+    if (command.pixel.x >= size.x || command.pixel.y >= size.y)
+      throw UsageError(fmt::format("pixel {},{} is not inside the image of {}x{}", command.pixel.x, command.pixel.y,
+                                   size.x, size.y));
+    if (progress_.samples == 0) throw UsageError("there is no image yet");
+    if (!values_) values_ = session.linearImage();
+    const std::uint32_t x = std::min(command.pixel.x / progress_.factor, values_->width - 1);
+    const std::uint32_t y = std::min(command.pixel.y / progress_.factor, values_->height - 1);
+    const auto value = std::as_const(*values_).pixel<float>(x, y);
+    send(withId(valueJson(command.pixel, {value.begin(), value.end()}), id));
+  }
+
+  void execute(const ExplainSample& command, const std::string& id) {
+    const job::PixelExplanation explanation = requireSession().explain(command.pixel, command.sample);
+    send(withId(interactive::explainedJson(explanation, ""), id));
+  }
+
+  interactive::Session& requireSession() {
+    if (!session_) throw UsageError("no program is open");
+    return *session_;
+  }
+
+  // Sends an error as the answer to the message `id`, and returns whether there was none.
+  template <class Function>
+  bool guarded(const std::string& id, const Function& function) {
+    const auto fail = [&](const std::exception& error) {
+      send(withId(messageJson("error", error.what()), id));
+      return false;
+    };
+    try {
+      function();
+      return true;
+    } catch (const ProgramError& error) {
+      send(diagnosticsJson(error.diagnostics(), session_ != nullptr));
+      return fail(error);
+    } catch (const TimeoutError& error) {  // deviceHung() has ended the process
+      return fail(error);
+    } catch (const DeviceLostError& error) {
+      if (session_ && session_->recoverFrom(error)) return true;
+      if (!session_) openEngine();  // its device stays lost
+      return fail(error);
+    } catch (const gpu::NoDeviceError& error) {
+      if (!session_) openEngine();  // the devices can change
+      return fail(error);
+    } catch (const std::exception& error) {
+      return fail(error);
+    }
+  }
+
+  // ---- Opening
+
+  void open(const OpenSession& command) {
+    reportLoad();
+    retry_.reset();
+    session_.reset();
+    progress_ = {};
+    imagePending_ = false;
+    try {
+      start(command);
+    } catch (const ProgramError& error) {
+      retryAfterSave(command, error.diagnostics());
+      throw;
+    } catch (const NameError&) {
+      throw;
+    } catch (const FileError& error) {
+      retryAfterSave(command, {asDiagnostic(error)});
+      throw ProgramError({asDiagnostic(error)});
+    } catch (const UsageError&) {  // such as an output that the program does not have yet
+      retryAfterSave(command, {});
+      throw;
+    }
+  }
+
+  void start(const OpenSession& command) {
+    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(command.files);
+    if (!unsaved_) loadableName(project_, command.program);  // throws
+    interactive::SessionRequest request;
+    request.program = unsaved_ ? unsaved_->folder().string() : command.program;
+    if (!command.scene.empty()) {
+      project_.locate(command.scene);  // throws
+      request.render.scene = command.scene;
+    }
+    const program::Program loaded = program::loadProgram(request.program);
+    request.render.size = command.size.value_or(settings_.defaults.size);
+    const bool frames = loaded.accumulation == program::Accumulation::program;
+    request.render.limits.samples = command.samples.value_or(frames ? kEndlessFrames : settings_.defaults.samples);
+    request.render.launchTimeout = settings_.defaults.timeout;
+    request.render.seed = command.seed;
+    request.render.assignments = knownParameters(loaded, command);
+    if (command.camera) request.render.camera = *command.camera;
+    session_ = std::make_unique<interactive::Session>(
+        *engine_, std::move(request), [this] { return clock_.seconds(); }, *this);
+    opened_ = command;
+    showed_.clear();
+    send(openedJson(*session_, opened_.program, opened_.scene, engine_->context().info().name));
+    send(diagnosticsJson(session_->diagnostics(), false));
+    graphOutdated_ = true;
+    applyDisplay(command);
+  }
+
+  // Those that the program has and accepts: a page can have values for an older version.
+  std::vector<std::string> knownParameters(const program::Program& loaded, const OpenSession& command) {
+    program::ParameterValues values(loaded.parameters);
+    std::vector<std::string> assignments;
+    for (const auto& [name, value] : command.parameters) {
+      const auto known = std::ranges::find(loaded.parameters, name, &program::Parameter::name);
+      if (known == loaded.parameters.end()) continue;
+      try {
+        if (known->type == program::ParameterType::image) checkImage(value);
+        values.set(name, value);
+        assignments.push_back(name + "=" + value);
+      } catch (const UsageError& error) {
+        send(messageJson("warning", error.what()));
+      }
+    }
+    return assignments;
+  }
+
+  void applyDisplay(const OpenSession& command) {
+    using namespace interactive;
+    const auto apply = [&](const Command& edit) {
+      try {
+        session_->apply(edit);
+      } catch (const UsageError& error) {  // the output of an older version
+        send(messageJson("warning", error.what()));
+      }
+    };
+    if (!command.output.empty() && command.output != session_->state().output) apply(SelectOutput{command.output});
+    if (command.exposure != 0) apply(SetExposure{command.exposure});
+    if (const auto toneMap = render::toneMapByName(command.toneMap)) apply(SetToneMap{toneMap});
+    if (command.frame && session_->isAnimated()) apply(SetFrame{*command.frame});
+  }
+
+  // The same view with a different program.
+  void openProgram(const std::string& program) {
+    OpenSession next = opened_;
+    next.program = program;
+    next.parameters.clear();
+    next.output.clear();
+    next.samples.reset();
+    if (session_) {
+      next.size = session_->state().size;
+      if (!session_->camera().orthographic && session_->state().camera.lookFrom) next.camera = session_->state().camera;
+    }
+    open(next);
+  }
+
+  void retryAfterSave(const OpenSession& command, const std::vector<Diagnostic>& diagnostics) {
+    job::WatchList files;
+    if (command.files.empty() && !isBuiltIn(command.program)) files.addProgram(command.program);
+    files.addDiagnosed(diagnostics);
+    if (files.files.empty() && files.folders.empty()) return;
+    retryWatcher_.emplace().watch(std::move(files));
+    retry_ = command;
+  }
+
+  // Files that a command names must be in the project.
+  void checkFiles(const interactive::Command& command) const {
+    if (const auto* environment = std::get_if<interactive::SetEnvironment>(&command)) {
+      const std::string source = environment->source.value_or("");
+      const bool isColor = !source.empty() && source.find_first_not_of("0123456789.,eE+-") == source.npos;
+      if (!source.empty() && source != "none" && source != "default" && !isColor) project_.locate(source);
+    } else if (const auto* set = std::get_if<interactive::SetParameter>(&command)) {
+      const auto& parameters = session_->program().parameters;
+      const auto known = std::ranges::find(parameters, set->name, &program::Parameter::name);
+      if (known != parameters.end() && known->type == program::ParameterType::image) checkImage(set->value);
+    }
+  }
+  void checkImage(const std::string& file) const {
+    if (!file.empty()) project_.locate(file);
+  }
+
+  // ---- Rendering
+
+  // Paused, and the image shows the last change.
+  bool isResting() const { return paused_ && batches_ == 0 && progress_.factor == 1 && progress_.samples > 0; }
+
+  void work() {
+    if (!isResting()) {
+      const bool moving = isMoving();
+      const auto interrupted = [&] {
+        reportAlive();
+        return inbox_.closed() || (!moving && inbox_.hasUrgent());
+      };
+      report(session_->step(paused_ ? 0.0 : kStepSeconds, interrupted));
+    } else if (session_->restarts() != restarts_) {
+      progress_ = {};  // an edit: render one image
+    }
+    restarts_ = session_->restarts();
+    sendImage();
+    reportStatistics();
+    if (graphOutdated_ && progress_.factor == 1 && progress_.samples > 0 && !isMoving()) describeGraph("");
+  }
+
+  bool countsFrames() const { return session_->program().accumulation == program::Accumulation::program; }
+  bool isMoving() const { return clock_.seconds() - lastCommand_ < kMovingSeconds; }
+
+  void report(const std::vector<interactive::Event>& events) {
+    for (const interactive::Event& event : events) {
+      if (const auto* image = std::get_if<interactive::ImageUpdated>(&event)) {
+        if (image->samples != progress_.samples && image->factor == 1 && batches_ > 0) --batches_;
+        progress_ = *image;
+        imagePending_ = true;
+        values_.reset();
+      } else if (const auto* found = std::get_if<interactive::DiagnosticsFound>(&event)) {
+        send(diagnosticsJson(found->diagnostics, hasErrors(found->diagnostics)));
+      } else {
+        if (std::holds_alternative<interactive::Restarted>(event)) {
+          progress_ = {};
+          imagePending_ = false;
+        }
+        send(interactive::eventJson(event));
+      }
+      if (std::holds_alternative<interactive::ProgramReloaded>(event)) {
+        send(openedJson(*session_, opened_.program, opened_.scene, engine_->context().info().name));
+        send(diagnosticsJson(session_->diagnostics(), false));
+        graphOutdated_ = true;
+      }
+    }
+  }
+
+  // While something moves or frames play, each image is sent as soon as the page has shown the ones before. At rest, some are sent
+  // without loss, and always the last one.
+  void sendImage() {
+    const bool plays = countsFrames() && !paused_ && !progress_.complete;
+    const bool atRest = progress_.factor == 1 && !isMoving() && !plays;
+    if (!imagePending_ && !(lossyShown_ && atRest)) return;
+    if (progress_.samples == 0 || sent_ - confirmed_ >= kMaxUnconfirmed) return;
+    const double now = clock_.seconds();
+    if (atRest && !progress_.complete && !isResting() && now - lastLossless_ < kLosslessSeconds) return;
+    const io::Image image = session_->image();
+    const ImageHeader header{.number = ++sent_,
+                             .size = {image.width, image.height},
+                             .factor = progress_.factor,
+                             .samples = static_cast<std::uint32_t>(progress_.samples),
+                             .format = atRest ? ImageFormat::png : ImageFormat::jpeg,
+                             .complete = progress_.complete};
+    send(imageJson(progress_, header.number));
+    channel_.write(FrameKind::binary,
+                   imageMessage(header, atRest ? io::encodePng(image) : io::encodeJpeg(image, kJpegQuality)));
+    if (atRest) lastLossless_ = now;
+    imagePending_ = false;
+    lossyShown_ = !atRest;
+  }
+
+  void reportStatistics() {
+    const double now = clock_.seconds();
+    if (progress_.factor != 1 || progress_.samples == 0 || isMoving()) return;
+    if (progress_.samples == reported_.samples && progress_.seconds == reported_.seconds) return;
+    if (!progress_.complete && now - lastStatistics_ < kStatisticsSeconds) return;
+    lastStatistics_ = now;
+    reported_ = progress_;
+    Statistics statistics{.samples = progress_.samples, .frames = countsFrames(), .seconds = progress_.seconds};
+    if (progress_.seconds > 0)
+      statistics.raysPerSecond = static_cast<double>(session_->rays().rays) / progress_.seconds;
+    if (!statistics.frames) {
+      const render::ErrorEstimate error = session_->result().error;
+      if (error.known()) statistics.error = error.upper;
+    }
+    send(statisticsJson(statistics));
+  }
+
+  // The check reads the program as it is compiled for the device, without a scene's definitions, so that all stages appear.
+  void describeGraph(const std::string& id) {
+    const interactive::Session& session = requireSession();
+    graphOutdated_ = false;
+    const program::SceneFacts facts = check::sceneFacts(session.scene());
+    const check::CheckResult result =
+        check::check(session.program(), engine_->compiler(), &facts, job::deviceLimits(engine_->context().info()));
+    const auto model = check::describePipeline(session.program(), engine_->compiler(), &facts, result);
+    if (model) send(withId(graphJson(check::pipelineJson(*model)), id));
+  }
+
+  void reportState() {
+    if (!session_) return;
+    std::string state = stateJson(*session_, opened_.program, paused_);
+    if (state == showed_) return;
+    send(state);
+    showed_ = std::move(state);
+  }
+
+  void reportLoad() {
+    const double now = secondsSince1970(std::chrono::system_clock::now());
+    channel_.write(FrameKind::control, controlJson({Control::loads, fmt::format("{}", now)}));
+  }
+
+  void reportAlive() {
+    const double now = clock_.seconds();
+    if (now - lastAlive_ < kAliveSeconds) return;
+    lastAlive_ = now;
+    channel_.write(FrameKind::control, controlJson({Control::alive, ""}));
+  }
+
+  FrameChannel& channel_;
+  const WorkerSettings settings_;
+  const ProjectFolder project_;
+  const Stopwatch clock_;
+  std::unique_ptr<job::Engine> engine_;
+  std::unique_ptr<UnsavedProgram> unsaved_;  // that the session shows
+  std::unique_ptr<interactive::Session> session_;
+  OpenSession opened_;                // of the session
+  std::optional<OpenSession> retry_;  // failed; repeated when one of the files is saved
+  std::optional<job::SourceWatcher> retryWatcher_;
+  std::optional<std::string> hold_;  // message of Control::hold
+  bool paused_ = false;
+  std::uint64_t batches_ = 0;  // to render while paused
+  std::uint64_t restarts_ = 0;
+  bool graphOutdated_ = false;
+  interactive::ImageUpdated progress_, reported_;  // of the last image, and in the last statistics
+  bool imagePending_ = false;                      // the last image was not sent
+  bool lossyShown_ = false;                        // the last one that was sent is a JPEG
+  std::optional<io::Image> values_;                // Session::linearImage() of the last image
+  std::uint32_t sent_ = 0, confirmed_ = 0;
+  std::string showed_;                                                                          // the last state
+  double lastCommand_ = -1e9, lastLossless_ = -1e9, lastStatistics_ = -1e9, lastAlive_ = -1e9;  // on clock_
+  Inbox inbox_;                                                                                 // last: its thread
+};
+
+}  // namespace
+
+int runWorker(int socket) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // the terminal sends it to all processes; the server ends its workers
+  FrameChannel channel(socket);
+  const std::optional<ChannelFrame> first = channel.read();
+  if (!first) return 0;
+  WorkerSettings settings = parseSettings(first->data);
+  fs::current_path(settings.folder);  // so that names in the project are paths
+  return Worker(channel, std::move(settings)).run();
+}
+
+}  // namespace quintet::lab

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the server and its workers say to each other, besides what they forward: FrameKind::control.
+#ifndef QUINTET_LAB_WORKER_CONTROL_H
+#define QUINTET_LAB_WORKER_CONTROL_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lab/api.h"
+
+namespace quintet::lab {
+
+// Exit status of a worker whose device hangs. WorkerHung precedes it.
+inline constexpr int kHungStatus = 70;
+
+// The first message to a worker.
+struct WorkerSettings {
+  std::string folder;  // of the project
+  std::string device;  // job::EngineOptions::device
+  LabDefaults defaults;
+};
+std::string settingsJson(const WorkerSettings& settings);
+WorkerSettings parseSettings(std::string_view json);  // throws Error
+
+// What else a control message says.
+enum class Control {
+  hold,  // to the worker: the next `open` waits until a file of its program is saved; `message` is that of the last `loads`
+  loads,  // from the worker: it reads the program; `message` is the time, seconds since 1970
+  alive,  // from the worker: it has finished what it did
+  hung,   // from the worker: a launch did not end in time; `message` says which
+};
+struct ControlMessage {
+  Control control = Control::alive;
+  std::string message;
+};
+std::string controlJson(const ControlMessage& message);
+ControlMessage parseControl(std::string_view json);  // throws Error
+
+}  // namespace quintet::lab
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Starts the process of a worker, which is the same executable with the option kWorkerOption, and finds out how it ended.
+#ifndef QUINTET_LAB_WORKER_PROCESS_H
+#define QUINTET_LAB_WORKER_PROCESS_H
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "lab/session_supervisor.h"
+
+namespace quintet::lab {
+
+// The only argument of a worker. Its socket is kWorkerSocket.
+inline constexpr const char* kWorkerOption = "--worker-of-quintet-lab";
+inline constexpr int kWorkerSocket = 3;
+
+struct WorkerProcess {
+  pid_t process = -1;
+  int socket = -1;  // of the server; the caller closes it
+};
+
+// The worker inherits no other file of this process but standard error. Throws Error.
+WorkerProcess startWorkerProcess(const std::filesystem::path& executable);
+
+// How the process ended; nothing while it runs. Does not wait. The process id is then free.
+std::optional<WorkerEnd> takeWorkerEnd(pid_t process);
+
+}  // namespace quintet::lab
+#endif

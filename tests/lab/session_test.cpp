@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions of pages: a worker process each, on the device.
+#include <signal.h>  // NOLINT: kill() of POSIX
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "base/file.h"
+#include "io/codec.h"
+#include "lab/project_folder.h"
+#include "page_client.h"
+#include "temp_folder.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+// One color, which a uniform decides.
+constexpr const char* kPlain = R"(/**** COMMON START ****/
+struct RayPayloadType {
+  vec3 color;
+};
+/**** COMMON END ****/
+/**** RAY GENERATION SHADER ****/
+uniform vec3 shade;  // defaultval="0.0, 1.0, 0.0"
+void main() {
+  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, vec3(0.0, 100.0, 0.0), 0.001, vec3(0.0, 1.0, 0.0), 1000.0, 0);
+  gsnSetPixel(vec4(shade * payload.color, 1.0));
+}
+/**** CLOSEST-HIT SHADER ****/
+void main() {
+  payload.color = vec3(0.5);
+}
+/**** MISS SHADER ****/
+void main() {
+  payload.color = vec3(1.0);
+}
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// The loop depends on what the trace returns, so that no compiler removes it.
+std::string endless() {
+  return replaced(
+      kPlain, "  gsnSetPixel(",
+      "  while (payload.color.x > -1.0) {\n"
+      "    traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, payload.color, 0.001, vec3(0.0, 1.0, 0.0), "
+      "1000.0, 0);\n  }\n  gsnSetPixel(");
+}
+
+// The average color of a PNG, sRGB bytes.
+std::vector<int> colorOf(const ReceivedImage& image) {
+  const io::Image decoded = io::decodeImage(std::as_bytes(std::span(image.file)), "image");
+  const auto pixel = decoded.pixel<std::uint8_t>(decoded.width / 2, decoded.height / 2);
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+bool isLossless(const lab::ImageHeader& header) { return header.format == lab::ImageFormat::png; }
+
+class LabSession : public ::testing::Test {
+ protected:
+  LabSession() {
+    fs::create_directories(folder_ / "mine");
+    save(kPlain);
+  }
+  void save(const std::string& text) const { writeFile(folder_ / "mine/mine.rt.glsl", text); }
+  LabProcess start(std::vector<std::string> options = {}) const {
+    options.insert(options.end(), {"--size", "64x36", "--spp", "4"});
+    return LabProcess(folder_.path(), options);
+  }
+  static Json open(const std::string& program = "mine") {
+    return {{"do", "open"}, {"program", program}, {"samples", 4}, {"id", 1}};
+  }
+  static Json done(PageClient& page, const Json& id) {
+    return page.waitFor([&](const Json& event) { return event.value("event", "") == "done" && event.at("id") == id; });
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(LabSession, OpensEditsBreaksAndFixesAProgram) {
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  const Json opened = page.waitFor("opened");
+  EXPECT_EQ(opened.at("program"), "mine");
+  EXPECT_EQ(opened.at("description").at("parameters").at(0).at("name"), "shade");
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));
+
+  // An edit through the server.
+  const std::string etag = "\"" + lab::contentHash(kPlain) + "\"";
+  const std::string red = replaced(kPlain, "\"0.0, 1.0, 0.0\"", "\"1.0, 0.0, 0.0\"");
+  EXPECT_EQ(server.request("PUT", "/api/files/mine/mine.rt.glsl", red, {{"if-match", etag}}).status, 200u);
+  page.waitFor("reloaded");
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(255, 0, 0));
+
+  // An error of an editor outside of the page.
+  save(replaced(red, "payload.color = vec3(1.0)", "payload.color = vec3(1.0"));
+  const Json broken = page.waitFor("diagnostics");
+  EXPECT_EQ(broken.at("outdated"), true);
+  ASSERT_FALSE(broken.at("diagnostics").empty());
+  EXPECT_EQ(broken.at("diagnostics").at(0).at("file"), "mine/mine.rt.glsl");
+  EXPECT_EQ(broken.at("diagnostics").at(0).at("line"), 18);
+  EXPECT_EQ(broken.at("diagnostics").at(0).at("severity"), "error");
+
+  save(replaced(red, "\"1.0, 0.0, 0.0\"", "\"0.0, 0.0, 1.0\""));
+  const Json fixed = page.waitFor("diagnostics");
+  EXPECT_EQ(fixed.at("outdated"), false);
+  EXPECT_TRUE(fixed.at("diagnostics").empty());
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 0, 255));
+}
+
+TEST_F(LabSession, OpensABrokenProgramOnceItIsFixed) {
+  save(replaced(kPlain, "payload.color = vec3(0.5);", "payload.color = vec2(0.5);"));
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  const Json broken = page.waitFor("diagnostics");
+  EXPECT_EQ(broken.at("outdated"), false);  // there is no image
+  EXPECT_EQ(broken.at("diagnostics").at(0).at("line"), 14);
+  EXPECT_EQ(page.waitFor("error").at("id"), 1);
+  save(kPlain);
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));
+}
+
+TEST_F(LabSession, AnswersCommands) {
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage(isLossless);
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {0, 0, 1}}, {"id", "blue"}});
+  done(page, "blue");
+  const Json state = page.waitFor("state");
+  EXPECT_EQ(state.at("parameters").at("shade"), Json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(state.at("canUndo"), true);
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 0, 255));
+  page.send({{"do", "value"}, {"x", 3}, {"y", 4}, {"id", 2}});
+  const Json value = page.waitFor("value");
+  EXPECT_EQ(value.at("id"), 2);
+  EXPECT_EQ(value.at("value"), Json({0.0, 0.0, 1.0, 1.0}));
+  page.send({{"do", "explain"}, {"x", 3}, {"y", 4}, {"id", 3}});
+  const Json explained = page.waitFor("explained");
+  EXPECT_EQ(explained.at("id"), 3);
+  EXPECT_THAT(explained.dump(), HasSubstr("mine/mine.rt.glsl"));
+  page.send({{"do", "graph"}, {"id", 4}});
+  const Json graph =
+      page.waitFor([](const Json& event) { return event.value("event", "") == "graph" && event.contains("id"); });
+  EXPECT_EQ(graph.at("graph").at("stages").size(), 3u);
+  page.send({{"do", "orbitt"}, {"id", 5}});
+  EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("did you mean 'orbit'?"));
+  page.send({{"do", "size"}, {"width", 32}, {"height", 18}});
+  const ReceivedImage small = page.waitForImage(isLossless);
+  EXPECT_EQ(small.header.size, uvec2(32, 18));
+}
+
+TEST_F(LabSession, PausesAndAdvancesFrames) {
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  const Json state = page.waitFor("state");
+  ASSERT_EQ(state.at("frames"), true);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+  page.send({{"do", "pause"}, {"id", 2}});
+  done(page, 2);
+  const ReceivedImage paused = page.waitForImage(isLossless);
+  std::uint32_t frames = paused.header.samples;
+  for (const std::uint32_t count : {1u, 1u, 3u}) {
+    page.send({{"do", "advance"}, {"frames", count}});
+    frames += count;
+    page.waitForImage([&](const lab::ImageHeader& header) { return header.samples == frames && isLossless(header); });
+  }
+  // Nothing more is rendered.
+  page.send({{"do", "value"}, {"x", 0}, {"y", 0}});
+  page.waitFor("value");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  page.send({{"do", "pause"}, {"on", true}, {"id", 3}});
+  std::size_t images = 0;
+  page.waitFor([&](const Json& event) {
+    images += event.value("event", "") == "image";
+    return event.value("event", "") == "done" && event.at("id") == 3;
+  });
+  EXPECT_EQ(images, 0u);
+}
+
+TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {
+  fs::create_directory(folder_ / "inner");
+  const LabProcess server(folder_ / "inner", {"--size", "16x16"});
+  PageClient page(server);
+  for (const char* program : {"../mine", "/etc", "mine", "."}) {
+    page.send(open(program));
+    EXPECT_EQ(page.waitFor("error").at("id"), 1) << program;
+  }
+  Json scene = open("<programs/normals>");
+  scene["scene"] = "../a.glb";
+  page.send(scene);
+  EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("is not a name"));
+  page.send(open("<programs/normals>"));
+  done(page, 1);
+  page.send({{"do", "environment"}, {"source", "/etc/passwd"}});
+  EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("is not a name"));
+}
+
+TEST_F(LabSession, SurvivesAnEndlessShader) {
+  const LabProcess server = start({"--timeout", "2"});
+  PageClient page(server), other(server);
+  page.send(open());
+  other.send(open());
+  page.waitForImage(isLossless);
+  other.waitForImage(isLossless);
+  fs::create_directory(folder_ / "loop");
+  writeFile(folder_ / "loop/loop.rt.glsl", endless());
+  page.send(open("loop"));
+  const Json hung = page.waitForWorker("hung");
+  EXPECT_THAT(hung.at("message").get<std::string>(), HasSubstr("2 s"));
+  EXPECT_EQ(page.waitForWorker("waiting").at("restarts"), 1);
+  // The others work on.
+  other.send({{"do", "exposure"}, {"stops", -1}, {"id", 2}});
+  done(other, 2);
+  EXPECT_EQ(server.request("GET", "/api/files").status, 200u);
+  // A correction starts it again, however early it comes.
+  writeFile(folder_ / "loop/loop.rt.glsl", kPlain);
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));
+}
+
+TEST_F(LabSession, RestartsAKilledWorker) {
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage(isLossless);
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {1, 1, 0}}, {"id", 2}});
+  done(page, 2);
+  page.waitFor("state");
+  ASSERT_EQ(server.workers().size(), 1u);
+  ::kill(server.workers().front(), SIGKILL);
+  EXPECT_THAT(page.waitForWorker("crashed").at("message").get<std::string>(), HasSubstr("signal 9"));
+  page.waitForWorker("started");
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(255, 255, 0));
+  EXPECT_EQ(server.workers().size(), 1u);
+}
+
+TEST_F(LabSession, EndsAnIdleWorkerAndStartsItAgain) {
+  const LabProcess server = start({"--idle", "2"});
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage(isLossless);
+  page.waitForWorker("idle");
+  for (int i = 0; i < 100 && !server.workers().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_TRUE(server.workers().empty());
+  page.send({{"do", "size"}, {"width", 32}, {"height", 32}});
+  page.waitForWorker("started");
+  page.waitForImage([](const lab::ImageHeader& header) { return header.size == uvec2(32, 32) && isLossless(header); });
+}
+
+TEST_F(LabSession, RejectsMessagesThatAreNoCommands) {
+  const LabProcess server = start({"--sessions", "2"});
+  PageClient text(server);
+  text.sendText("hello");
+  EXPECT_EQ(text.waitForClose(), 1008u);
+  PageClient large(server);
+  large.sendText(Json{{"do", "open"}, {"program", std::string((1u << 20) + 1, 'x')}}.dump());
+  EXPECT_EQ(large.waitForClose(), 1009u);
+  PageClient first(server), second(server), third(server);
+  EXPECT_EQ(third.waitForClose(), 1013u);
+  first.send(open());
+  first.waitFor("opened");
+}
+
+TEST_F(LabSession, LeavesNothingAfterFiftySessions) {
+  const LabProcess server = start();
+  std::size_t memory = 0;
+  for (int i = 0; i < 50; ++i) {
+    PageClient page(server);
+    page.waitForWorker("started");
+    if (i % 10 == 0) {  // some of them render
+      page.send(open());
+      page.waitForImage();
+    }
+    if (i % 2 == 0) page.close();  // the others only end
+    if (i == 9) memory = server.memory();
+  }
+  for (int i = 0; i < 500 && !server.workers().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_TRUE(server.workers().empty());
+  EXPECT_LT(server.memory(), memory + (std::size_t{4} << 20));
+}
+
+TEST_F(LabSession, EndsWithTheServer) {
+  LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage();
+  const std::vector<pid_t> workers = server.workers();
+  ASSERT_EQ(workers.size(), 1u);
+  EXPECT_EQ(server.stop(), 0);
+  EXPECT_EQ(page.waitForClose(), 1001u);
+  for (int i = 0; i < 250 && ::kill(workers.front(), 0) == 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_NE(::kill(workers.front(), 0), 0);
+}
+
+}  // namespace
+}  // namespace quintet::test

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Starts quintet-lab with a project folder of its own, and Chromium. Environment: QUINTET_LAB, the server; WEB, the folder
+// with node_modules; CHROMIUM, the browser.
+import { spawn } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import path from "node:path";
+
+const { QUINTET_LAB, WEB, CHROMIUM } = process.env;
+for (const [name, value] of Object.entries({ QUINTET_LAB, WEB, CHROMIUM })) if (!value) throw new Error(`the environment variable ${name} is missing`);
+const { chromium } = createRequire(path.join(WEB, "package.json"))("playwright-core");
+
+// Seconds that a first image may take on a slow machine with a busy CPU.
+export const kPatience = Number(process.env.PATIENCE ?? 60_000);
+
+export class Server {
+  static async start({ folder, port = 0, args = [] } = {}) {
+    const server = new Server();
+    server.ownsFolder = folder === undefined;
+    server.folder = folder ?? mkdtempSync(path.join(tmpdir(), "quintet-lab-page-"));
+    server.process = spawn(QUINTET_LAB, [server.folder, "--no-open", "--port", String(port), ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    server.output = "";
+    server.url = await new Promise((resolve, reject) => {
+      const read = (data) => {
+        server.output += data;
+        const url = /http:\/\/\S+/.exec(server.output)?.[0];
+        if (url) resolve(url);
+      };
+      server.process.stdout.on("data", read);
+      server.process.stderr.on("data", read);
+      server.process.on("exit", (code) => reject(new Error(`the server ended with status ${code}: ${server.output}`)));
+    });
+    return server;
+  }
+  get origin() {
+    return new URL(this.url).origin;
+  }
+  get port() {
+    return Number(new URL(this.url).port);
+  }
+  // Process ids of the workers.
+  workers() {
+    const children = readFileSync(`/proc/${this.process.pid}/task/${this.process.pid}/children`, "utf8").trim();
+    const ids = new Set(children ? children.split(" ").map(Number) : []);
+    for (const task of readdirSync(`/proc/${this.process.pid}/task`)) {
+      const more = readFileSync(`/proc/${this.process.pid}/task/${task}/children`, "utf8").trim();
+      for (const id of more ? more.split(" ") : []) ids.add(Number(id));
+    }
+    return [...ids];
+  }
+  async stop({ keepFolder = false } = {}) {
+    if (this.process.exitCode === null && this.process.signalCode === null) {
+      const ended = new Promise((resolve) => this.process.once("exit", resolve));
+      this.process.removeAllListeners("exit");
+      this.process.once("exit", () => undefined);
+      this.process.kill("SIGTERM");
+      await Promise.race([ended, new Promise((resolve) => setTimeout(resolve, 5000))]);
+      this.process.kill("SIGKILL");
+    }
+    if (this.ownsFolder && !keepFolder) rmSync(this.folder, { recursive: true, force: true });
+  }
+}
+
+export async function startBrowser() {
+  return chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
+}
+
+// A page whose errors, and requests to other hosts, end the test.
+export async function openPage(context, url) {
+  const page = await context.newPage();
+  page.problems = [];
+  page.on("pageerror", (error) => page.problems.push(`error in the page: ${error.message}`));
+  page.on("console", (message) => {
+    if (message.type() === "error" && /Content Security Policy|Uncaught/.test(message.text())) page.problems.push(message.text());
+  });
+  page.on("request", (request) => {
+    const { protocol, host } = new URL(request.url());
+    if (/^(http|ws)s?:$/.test(protocol) && host !== new URL(url).host) page.problems.push(`request to ${host}`);
+  });
+  // For the development of the page: a folder whose build replaces the embedded one.
+  if (process.env.PAGE)
+    for (const [name, type] of [["lab.js", "text/javascript"], ["lab.css", "text/css"]])
+      await page.route(`**/${name}`, (route) => route.fulfill({ path: path.join(process.env.PAGE, name), contentType: type }));
+  page.setDefaultTimeout(kPatience);
+  await page.goto(url);
+  return page;
+}
+
+// The displayed pixels as a text.
+export function imageOf(page) {
+  return page.evaluate(() => document.querySelector("canvas.image").toDataURL());
+}
+
+export async function waitForImage(page) {
+  await page.waitForFunction(() => /(Frame \d+|\d+ of \d+ samples)/.test(document.querySelector(".image-facts")?.textContent ?? "") && document.querySelector(".image-overlay").hidden && Number(document.querySelector("canvas.image").dataset.shown) > 0);
+}
+
+// Waits until the image differs from `before`, and returns it.
+export async function waitForChange(page, before) {
+  await page.waitForFunction((old) => document.querySelector("canvas.image").toDataURL() !== old, before);
+  return imageOf(page);
+}
+
+// The color at a share of the width and height of the image, 0 to 255.
+export function colorAt(page, x, y) {
+  return page.evaluate(
+    ([u, v]) => {
+      const canvas = document.querySelector("canvas.image");
+      return [...canvas.getContext("2d").getImageData(Math.floor(u * canvas.width), Math.floor(v * canvas.height), 1, 1).data.slice(0, 3)];
+    },
+    [x, y],
+  );
+}
+
+export async function showTab(page, title) {
+  await page.getByRole("tab", { name: title, exact: false }).first().click();
+}
+
+// Replaces the only occurrence of a text in the shown editor, with the keyboard and the search panel of the editor.
+export async function replaceInEditor(page, from, to) {
+  await page.locator(".cm-content").first().focus();
+  await page.keyboard.press("Control+f");
+  const panel = page.locator(".cm-search");
+  await panel.locator("input[name=search]").fill(from);
+  await panel.locator("input[name=replace]").fill(to);
+  await panel.locator("[name=replaceAll]").click();
+  await panel.locator("[name=close]").click();
+}
+
+export async function waitForSaved(page) {
+  await page.locator(".save-state", { hasText: /^Saved$/ }).waitFor();
+}
+
+export function openProgram(page, server, name) {
+  return page.goto(`${server.origin}/#program=${encodeURIComponent(name)}`);
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/page_message.h"
+
+#include <gmock/gmock.h>
+
+namespace quintet::lab {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+namespace interactive = job::interactive;
+
+PageMessage parsed(const std::string& text) {
+  const auto result = parsePageMessage(text);
+  if (const auto* error = std::get_if<PageMessageError>(&result)) {
+    ADD_FAILURE() << text << ": " << error->message;
+    return {};
+  }
+  return std::get<PageMessage>(result);
+}
+
+PageMessageError errorOf(const std::string& text) {
+  const auto result = parsePageMessage(text);
+  const auto* error = std::get_if<PageMessageError>(&result);
+  EXPECT_TRUE(error) << text;
+  return error ? *error : PageMessageError{};
+}
+
+TEST(PageMessage, ReadsOpen) {
+  const PageMessage message = parsed(
+      R"({"do":"open","id":7,"program":"mine","scene":"a.glb","width":320,"height":200,"samples":9,
+          "parameters":{"tint":[1,0.5,0],"on":true,"n":3,"image":"a.png"},"output":"depth","exposure":-1,"tonemap":"aces",
+          "frame":2.5,"camera":{"from":[0,1,4],"at":[0,0,0],"fov":30,"aperture":0.1,"focus":2},"seed":5})");
+  EXPECT_EQ(message.id, "7");
+  const auto& open = std::get<OpenSession>(message.command);
+  EXPECT_EQ(open.program, "mine");
+  EXPECT_EQ(open.scene, "a.glb");
+  EXPECT_EQ(open.size, uvec2(320, 200));
+  EXPECT_EQ(open.samples, 9u);
+  EXPECT_THAT(open.parameters,
+              ElementsAre(Pair("image", "a.png"), Pair("n", "3"), Pair("on", "true"), Pair("tint", "1,0.5,0")));
+  EXPECT_EQ(open.output, "depth");
+  EXPECT_EQ(open.exposure, -1.0);
+  EXPECT_EQ(open.toneMap, "aces");
+  EXPECT_EQ(open.frame, 2.5f);
+  ASSERT_TRUE(open.camera);
+  EXPECT_EQ(open.camera->lookFrom, vec3(0, 1, 4));
+  EXPECT_EQ(open.camera->verticalFov, 30.0f);
+  EXPECT_EQ(open.camera->apertureRadius, 0.1f);
+  EXPECT_EQ(open.seed, 5u);
+}
+
+TEST(PageMessage, OpenNeedsOnlyAProgram) {
+  const PageMessage message = parsed(R"({"do":"open","program":"<programs/ao>","camera":null})");
+  EXPECT_EQ(message.id, "");
+  const auto& open = std::get<OpenSession>(message.command);
+  EXPECT_FALSE(open.size || open.samples || open.camera || open.frame);
+}
+
+TEST(PageMessage, ReadsCommandsOfTheLab) {
+  EXPECT_EQ(std::get<ImageReceived>(parsed(R"({"do":"received","image":3})").command).image, 3u);
+  EXPECT_FALSE(std::get<PauseSession>(parsed(R"({"do":"pause","on":false})").command).on);
+  EXPECT_EQ(std::get<AdvanceFrames>(parsed(R"({"do":"advance"})").command).count, 1u);
+  EXPECT_EQ(std::get<PickPixel>(parsed(R"({"do":"pick","x":1,"y":2})").command).pixel, uvec2(1, 2));
+  EXPECT_EQ(std::get<ExplainSample>(parsed(R"({"do":"explain","x":1,"y":2,"sample":4})").command).sample, 4u);
+  EXPECT_TRUE(std::holds_alternative<RestartWorker>(parsed(R"({"do":"restart"})").command));
+}
+
+TEST(PageMessage, ReadsCommandsOfSessions) {
+  const auto command = std::get<interactive::Command>(parsed(R"({"do":"orbit","dx":30,"id":"a"})").command);
+  EXPECT_EQ(std::get<interactive::Orbit>(command).right, 30.0f);
+}
+
+TEST(PageMessage, ReportsErrorsWithTheId) {
+  EXPECT_EQ(errorOf(R"({"do":"pick","x":1,"id":"p1"})").id, "\"p1\"");
+  EXPECT_THAT(errorOf(R"({"do":"pick","x":1})").message, HasSubstr("'y' is missing"));
+  EXPECT_THAT(errorOf(R"({"do":"orbitt"})").message, HasSubstr("unknown command 'orbitt' (did you mean 'orbit'?)"));
+  EXPECT_THAT(errorOf(R"({"do":"opne"})").message, HasSubstr("did you mean 'open'?"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","camra":{}})").message, HasSubstr("unknown key 'camra'"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","parameters":{"x":{}}})").message, HasSubstr("parameter 'x'"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","width":8})").message, HasSubstr("'height' is missing"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","width":5000,"height":5})").message,
+              HasSubstr("larger than 4096x4096"));
+  EXPECT_THAT(errorOf(R"({"do":"size","width":5000,"height":5})").message, HasSubstr("larger than 4096x4096"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","camera":{"at":[0,0,0]}})").message, HasSubstr("'from'"));
+  EXPECT_THAT(errorOf(R"({"do":"pause","id":[1]})").message, HasSubstr("'id'"));
+}
+
+TEST(PageMessage, RejectsWhatIsNoObject) {
+  for (const char* text : {"", "[]", "1", "{", "\"do\"", "{\"do\":1e999}", "{'do':'open'}", "{\"do\":\"open\"} x"}) {
+    errorOf(text);
+    EXPECT_FALSE(commandName(text) == "open") << text;
+  }
+  errorOf(std::string(100000, '['));
+  errorOf("{\"do\":\"open\",\"program\":\"\xFF\"}");
+}
+
+}  // namespace
+}  // namespace quintet::lab

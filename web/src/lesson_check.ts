@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks a task of a lesson: renders the user's program and the solution with a connection of its own, and compares the
+// images.
+import { Connection } from "./connection";
+import type { Diagnostic } from "./diagnostic";
+import { compareImages, type ImageDifference, kAllowedShare } from "./image_difference";
+import { type LessonTask, solutionFiles } from "./lesson_tasks";
+import type { ImageMessage } from "./protocol";
+
+export const kCheckSize = { width: 240, height: 135 };
+const kTimeout = 60_000; // ms
+
+export interface CheckResult {
+  passed: boolean;
+  message: string;
+  yours?: ImageBitmap;
+  expected?: ImageBitmap;
+  difference?: ImageDifference;
+}
+
+type Sources = Record<string, string>; // by name in the folder
+
+class Renderer {
+  private readonly link: Connection;
+  private waiting: { resolve: (image: ImageMessage) => void; reject: (error: Error) => void } | undefined;
+  private ready: (() => void) | undefined;
+  private fail: ((error: Error) => void) | undefined;
+
+  constructor() {
+    this.link = new Connection({
+      onConnect: () => this.ready?.(),
+      onState: (state, message) => {
+        if (state === "refused" || state === "full" || state === "lost") this.stop(message || "The server does not answer");
+      },
+      onEvent: (event) => {
+        if (event.event === "diagnostics") {
+          const error = event.diagnostics.find((diagnostic: Diagnostic) => diagnostic.severity === "error");
+          if (error) this.stop(`${error.file.replace(/^.*\//, "")}:${error.line}: ${error.text}`);
+        } else if (event.event === "error") this.stop(event.message);
+        else if (event.event === "worker" && (event.state === "crashed" || event.state === "hung" || event.state === "waiting")) this.stop(event.message);
+      },
+      onImage: (image) => {
+        this.link.send({ do: "received", image: image.number });
+        if (!image.complete || image.mime !== "image/png") return;
+        this.waiting?.resolve(image);
+        this.waiting = undefined;
+      },
+    });
+  }
+
+  connect(): Promise<void> {
+    return new Promise((resolve, reject) => {
+      this.ready = resolve;
+      this.fail = reject;
+      this.link.connect();
+    });
+  }
+
+  render(files: Sources, task: LessonTask): Promise<ImageMessage> {
+    return new Promise((resolve, reject) => {
+      const timer = setTimeout(() => this.stop("The render took too long"), kTimeout);
+      const end = () => clearTimeout(timer);
+      this.waiting = {
+        resolve: (image) => (end(), resolve(image)),
+        reject: (error) => (end(), reject(error)),
+      };
+      this.link.send({ do: "open", files, ...kCheckSize, samples: task.samples ?? 1, parameters: task.parameters ?? {} });
+    });
+  }
+
+  close(): void {
+    this.link.close();
+  }
+
+  private stop(message: string): void {
+    const error = new Error(message);
+    this.fail?.(error);
+    this.waiting?.reject(error);
+    this.waiting = undefined;
+  }
+}
+
+async function decode(image: ImageMessage): Promise<{ bitmap: ImageBitmap; data: Uint8ClampedArray }> {
+  const bitmap = await createImageBitmap(new Blob([image.file], { type: image.mime }), { colorSpaceConversion: "none" });
+  const canvas = document.createElement("canvas");
+  canvas.width = bitmap.width;
+  canvas.height = bitmap.height;
+  const context = canvas.getContext("2d", { willReadFrequently: true })!;
+  context.drawImage(bitmap, 0, 0);
+  return { bitmap, data: context.getImageData(0, 0, bitmap.width, bitmap.height).data };
+}
+
+// `mine` and `original`: files by name in the folder.
+export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, string>, original: ReadonlyMap<string, string>, main: string): Promise<CheckResult> {
+  const renderer = new Renderer();
+  try {
+    const solution = solutionFiles(original, main, task);
+    await renderer.connect();
+    let image: ImageMessage;
+    try {
+      image = await renderer.render(Object.fromEntries(mine), task);
+    } catch (error) {
+      return { passed: false, message: `Your program does not render: ${(error as Error).message}` };
+    }
+    const wanted = await renderer.render(Object.fromEntries(solution), task);
+    const [yours, expected] = await Promise.all([decode(image), decode(wanted)]);
+    const difference = compareImages(yours.data, expected.data, yours.bitmap.width);
+    const passed = difference.differing <= kAllowedShare;
+    return { passed, message: passed ? "Done: the image is that of the solution." : differenceText(difference), yours: yours.bitmap, expected: expected.bitmap, difference };
+  } catch (error) {
+    return { passed: false, message: (error as Error).message };
+  } finally {
+    renderer.close();
+  }
+}
+
+function differenceText(difference: ImageDifference): string {
+  const percent = Math.max(0.1, Math.round(difference.differing * 1000) / 10);
+  const worst = difference.worst;
+  const text = `${percent} % of the pixels differ from the solution.`;
+  if (!worst) return text;
+  return `${text} Largest difference at pixel ${worst.x}, ${worst.y}: yours is ${worst.left.join(" ")}, the solution has ${worst.right.join(" ")} (0 to 255).`;
+}
