@@ -1,102 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lessons 21 and 22: path tracers, compared with path tracers on the host that use other random numbers and, for lesson 22,
-// no next-event estimation. The comparison uses blocks of pixels and their standard errors.
+// Lesson 21, compared with a path tracer on the host that uses other random numbers: the scene of the lesson, and scenes with
+// one large sphere, which show a single material or the lens.
 #include <gtest/gtest.h>
 
-#include <mutex>
-#include <random>
-
-#include "base/parallel.h"
+#include "block_means.h"
 #include "solids.h"
 
 namespace quintet::test {
 namespace {
 
-constexpr std::uint32_t kWidth = 24, kHeight = 16, kBlock = 8;
-
-struct Mean {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void add(double v) { sum += v, squares += v * v, count++; }
-  double value() const { return sum / count; }
-  double variance() const { return std::max(0.0, squares / count - value() * value()) / (count - 1); }  // of the mean
-};
-
-struct Random {
-  std::mt19937 engine;
-  double operator()() { return std::uniform_real_distribution<double>(0, 1)(engine); }
-  dvec3 unit() {
-    std::normal_distribution<double> normal;
-    return glm::normalize(dvec3(normal(engine), normal(engine), normal(engine)));
-  }
-};
-
-using HostPath = std::function<dvec3(dvec2 point, Random& random)>;
-
-// `toLinear` decodes the values of the lesson.
-void expectBlocks(const std::string& name, const LessonOptions& given, std::uint32_t frames, int hostSamples,
-                  const HostPath& path, const std::function<double(double)>& toLinear) {
-  LessonOptions options = given;
-  options.width = kWidth;
-  options.height = kHeight;
-  options.frames = frames;
-  const LessonImage image = renderLesson(name, options);
-
-  constexpr std::uint32_t kColumns = kWidth / kBlock, kRows = kHeight / kBlock;
-  std::vector<Mean> host(kColumns * kRows);
-  parallelFor(host.size(), [&](std::size_t block) {
-    Random random{std::mt19937(static_cast<unsigned>(1 + block))};
-    for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
-      const std::uint32_t x = static_cast<std::uint32_t>(block % kColumns) * kBlock + i % kBlock;
-      const std::uint32_t y = static_cast<std::uint32_t>(block / kColumns) * kBlock + i / kBlock;
-      for (int s = 0; s < hostSamples; ++s) {
-        const dvec3 c = path(dvec2((x + random()) / kWidth, (y + random()) / kHeight), random);
-        host[block].add((c.x + c.y + c.z) / 3);
-      }
-    }
-  });
-  for (std::size_t block = 0; block < host.size(); ++block) {
-    Mean device;
-    for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
-      const vec4 c = image.at(static_cast<std::uint32_t>(block % kColumns) * kBlock + i % kBlock,
-                              static_cast<std::uint32_t>(block / kColumns) * kBlock + i / kBlock);
-      device.add((toLinear(c.x) + toLinear(c.y) + toLinear(c.z)) / 3);
-    }
-    // The device takes at least as many samples per pixel as the host, so its error is at most that of the host.
-    const double error = std::sqrt(2 * host[block].variance());
-    EXPECT_NEAR(device.value(), host[block].value(), 4.5 * error + 1e-4) << "block " << block;
-    EXPECT_LT(error, 0.06 * host[block].value()) << "block " << block << ": the standard error is too large";
-  }
-}
-
-// ---- 22 ----
-
-dvec3 cornellPath(const scene::Scene& scene, dvec2 point, Random& random) {
-  HostRay ray = cameraRay({0, 1, 3.9}, {0, 1, 0}, {0, 1, 0}, 38, static_cast<double>(kWidth) / kHeight, point);
-  dvec3 weight(1);
-  for (int depth = 0; depth <= 3; ++depth) {
-    const HostHit hit = closestTriangle(scene, ray, 1e-6, 1e4);
-    if (hit.t < 0) return dvec3(0);
-    if (hit.instance == 1 && ray.direction.y > 0) return weight * dvec3(16, 13, 9);
-    const HostSurface s = surfaceAt(scene, hit);
-    const dvec3 normal = glm::dot(s.faceNormal, ray.direction) > 0 ? -s.faceNormal : s.faceNormal;
-    weight *= hit.instance == 2 ? dvec3(0.63, 0.065, 0.05) : hit.instance == 3 ? dvec3(0.14, 0.45, 0.091) : dvec3(0.73);
-    ray = {s.position + 1e-5 * normal, glm::normalize(normal + random.unit())};
-  }
-  return dvec3(0);
-}
-
-TEST(LessonPathTracer, ConvergesToTheImageWithoutNextEventEstimation) {
-  const scene::Scene scene = lessonScene("22_path_tracer");
-  LessonOptions options;
-  options.set = {{"bounces", "3"}, {"samples", "32"}};
-  expectBlocks(
-      "22_path_tracer", options, 8, 2400,
-      [&](dvec2 point, Random& random) { return cornellPath(scene, point, random); },
-      [](double v) { return std::pow(v, 2.2); });
-}
-
-// ---- 21 ----
+constexpr std::uint32_t kWeekendWidth = 24, kWeekendHeight = 16;
 
 std::uint32_t hashed(std::uint32_t x) {
   x = x * 747796405u + 2891336453u;
@@ -104,65 +17,79 @@ std::uint32_t hashed(std::uint32_t x) {
   return (x >> 22u) ^ x;
 }
 
-struct Material {
-  char kind;  // m diffuse, M metal, g glass
+enum class Kind { diffuse, metal, glass };
+
+struct WeekendMaterial {
+  Kind kind;
   dvec3 color;
   double fuzz;
 };
 
-Material materialOf(std::uint32_t i) {
-  if (i == 0) return {'m', dvec3(0.5), 0};
-  if (i == 1) return {'g', dvec3(1), 0};
-  if (i == 2) return {'m', dvec3(0.4, 0.2, 0.1), 0};
-  if (i == 3) return {'M', dvec3(0.7, 0.6, 0.5), 0};
+WeekendMaterial materialOf(std::uint32_t i) {
+  if (i == 0) return {Kind::diffuse, dvec3(0.5), 0};
+  if (i == 1) return {Kind::glass, dvec3(1), 0};
+  if (i == 2) return {Kind::diffuse, dvec3(0.4, 0.2, 0.1), 0};
+  if (i == 3) return {Kind::metal, dvec3(0.7, 0.6, 0.5), 0};
   const auto thirds = [](std::uint32_t h) { return dvec3(h & 1023u, (h >> 10u) & 1023u, (h >> 20u) & 1023u) / 1023.0; };
   const std::uint32_t h = hashed(i), k = hashed(h);
   const dvec3 a = thirds(h), b = thirds(k);
   const double choice = (hashed(k + 1) >> 8u) / 16777216.0;
-  if (choice < 0.8) return {'m', a * b, 0};
-  if (choice < 0.95) return {'M', 0.5 + 0.5 * a, 0.5 * b.x};
-  return {'g', dvec3(1), 0};
+  if (choice < 0.8) return {Kind::diffuse, a * b, 0};
+  if (choice < 0.95) return {Kind::metal, 0.5 + 0.5 * a, 0.5 * b.x};
+  return {Kind::glass, dvec3(1), 0};
 }
 
-dvec3 weekendPath(const std::vector<Bounds3>& boxes, dvec2 point, Random& random) {
+struct WeekendSphere {
+  std::uint32_t index = 0;
+  dvec3 center{0};
+  double radius = 0;
+};
+
+struct Lens {
+  double aperture = 0.1;
+  double focus = 10;
+};
+
+// Reflection and refraction are written with angles instead of reflect() and refract().
+dvec3 weekendPath(const std::vector<WeekendSphere>& spheres, const Lens& lens, dvec2 point, HostRandom& random) {
   const dvec3 eye(13, 2, 3), back = glm::normalize(eye), right = glm::normalize(glm::cross(dvec3(0, 1, 0), back)),
                              up = glm::cross(back, right);
   const dvec2 plane =
-      (2.0 * point - 1.0) * dvec2(static_cast<double>(kWidth) / kHeight, 1) * std::tan(glm::radians(10.0));
-  dvec2 lens;
-  do lens = 2.0 * dvec2(random(), random()) - 1.0;
-  while (glm::dot(lens, lens) > 1);
-  const dvec3 from = eye + 0.05 * (lens.x * right + lens.y * up);
-  HostRay ray{from, glm::normalize(eye + 10.0 * (plane.x * right + plane.y * up - back) - from)};
+      (2.0 * point - 1.0) * dvec2(double(kWeekendWidth) / kWeekendHeight, 1) * std::tan(glm::radians(10.0));
+  dvec2 onLens;
+  do onLens = 2.0 * dvec2(random(), random()) - 1.0;
+  while (glm::dot(onLens, onLens) > 1);
+  const dvec3 from = eye + 0.5 * lens.aperture * (onLens.x * right + onLens.y * up);
+  HostRay ray{from, glm::normalize(eye + lens.focus * (plane.x * right + plane.y * up - back) - from)};
   dvec3 weight(1);
   for (int bounce = 0; bounce <= 16; ++bounce) {
     double t = 1e30;
-    std::uint32_t which = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const dvec3 center = 0.5 * (dvec3(boxes[i].min) + dvec3(boxes[i].max));
-      const auto interval = sphereInterval(ray, center, 0.5 * (double(boxes[i].max.x) - boxes[i].min.x));
+    const WeekendSphere* which = nullptr;
+    for (const WeekendSphere& sphere : spheres) {
+      const auto interval = sphereInterval(ray, sphere.center, sphere.radius);
       if (!interval) continue;
       const double candidate = interval->in > 1e-6 ? interval->in : interval->out;
-      if (candidate > 1e-6 && candidate < t) t = candidate, which = static_cast<std::uint32_t>(i);
+      if (candidate > 1e-6 && candidate < t) t = candidate, which = &sphere;
     }
-    if (t >= 1e30) return weight * glm::mix(dvec3(1), dvec3(0.5, 0.7, 1), 0.5 + 0.5 * ray.direction.y);
+    if (!which) return weight * glm::mix(dvec3(1), dvec3(0.5, 0.7, 1), 0.5 + 0.5 * ray.direction.y);
     const dvec3 position = ray.origin + t * ray.direction;
-    const dvec3 outward = glm::normalize(position - 0.5 * (dvec3(boxes[which].min) + dvec3(boxes[which].max)));
+    const dvec3 outward = glm::normalize(position - which->center);
     const bool front = glm::dot(ray.direction, outward) < 0;
     const dvec3 normal = front ? outward : -outward;
-    const Material m = materialOf(which);
+    const WeekendMaterial m = materialOf(which->index);
+    const double cosine = std::min(1.0, -glm::dot(ray.direction, normal));
+    const dvec3 mirrored = ray.direction + 2 * cosine * normal;
     dvec3 next;
-    if (m.kind == 'm') {
+    if (m.kind == Kind::diffuse) {
       next = normal + random.unit();
-    } else if (m.kind == 'M') {
-      next = glm::normalize(glm::reflect(ray.direction, normal)) + m.fuzz * random.unit();
+    } else if (m.kind == Kind::metal) {
+      next = mirrored + m.fuzz * random.unit();
       if (glm::dot(next, normal) <= 0) return dvec3(0);
     } else {
-      const double eta = front ? 1 / 1.5 : 1.5, cosine = std::min(1.0, -glm::dot(ray.direction, normal));
-      const double sine = eta * std::sqrt(1 - cosine * cosine);
-      const double r0 = std::pow((1 - eta) / (1 + eta), 2), reflectance = r0 + (1 - r0) * std::pow(1 - cosine, 5);
-      if (sine > 1 || reflectance > random())
-        next = glm::reflect(ray.direction, normal);
+      const double eta = front ? 1 / 1.5 : 1.5, sine = eta * std::sqrt(1 - cosine * cosine);
+      const double r0 = std::pow((1 - eta) / (1 + eta), 2), reflected = r0 + (1 - r0) * std::pow(1 - cosine, 5);
+      if (sine > 1 || reflected > random())
+        next = mirrored;
       else
         next = eta * (ray.direction + cosine * normal) - std::sqrt(1 - sine * sine) * normal;
     }
@@ -173,13 +100,97 @@ dvec3 weekendPath(const std::vector<Bounds3>& boxes, dvec2 point, Random& random
   return dvec3(0);
 }
 
+WeekendSphere sphereIn(const Bounds3& box, std::uint32_t index) {
+  return {index, 0.5 * (dvec3(box.min) + dvec3(box.max)), 0.5 * (double(box.max.x) - box.min.x)};
+}
+
+void expectWeekend(const scene::Scene& scene, const std::vector<WeekendSphere>& spheres, const Lens& lens,
+                   std::uint32_t frames, int paths, std::uint32_t block, double relative = 0.03) {
+  BlockLimits limits;
+  limits.block = block;
+  limits.relative = relative;
+  limits.gamma = 2;
+  const std::vector<dvec3> reference = hostBlocks(
+      kWeekendWidth, kWeekendHeight,
+      [&](std::uint32_t x, std::uint32_t y, HostRandom& random) {
+        dvec3 sum(0);
+        for (int s = 0; s < paths; ++s)
+          sum += weekendPath(spheres, lens, {(x + random()) / kWeekendWidth, (y + random()) / kWeekendHeight}, random);
+        return sum / double(paths);
+      },
+      limits);
+  LessonOptions options;
+  options.width = kWeekendWidth;
+  options.height = kWeekendHeight;
+  options.frames = frames;
+  options.scene = scene;
+  options.set = {{"samples", "32"}, {"aperture", std::to_string(lens.aperture)}, {"focus", std::to_string(lens.focus)}};
+  expectBlocks(renderLesson("21_one_weekend", options), reference, limits);
+}
+
+// A scene with the ground and one sphere, whose material is that of the index. The spheres with smaller indices are hidden
+// in the ground.
+void expectOneSphere(std::uint32_t index, const dvec3& center, double radius, const Lens& lens, int paths = 1500,
+                     double relative = 0.03) {
+  scene::Scene scene = lessonScene("21_one_weekend");
+  std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
+  boxes.resize(index + 1);
+  for (std::uint32_t i = 1; i < index; ++i)
+    boxes[i] = {vec3(-0.1f, -500.1f, float(i) - 0.1f), vec3(0.1f, -499.9f, float(i) + 0.1f)};
+  boxes[index] = {vec3(center - radius), vec3(center + radius)};
+  expectWeekend(scene, {sphereIn(boxes[0], 0), sphereIn(boxes[index], index)}, lens,
+                static_cast<std::uint32_t>(paths / 32), paths, 4, relative);
+}
+
 TEST(LessonOneWeekend, ConvergesToTheImageOfTheHost) {
   const scene::Scene scene = lessonScene("21_one_weekend");
-  const std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
-  ASSERT_GT(boxes.size(), 400u);
-  expectBlocks(
-      "21_one_weekend", {}, 8, 48, [&](dvec2 point, Random& random) { return weekendPath(boxes, point, random); },
-      [](double v) { return v * v; });
+  std::vector<WeekendSphere> spheres;
+  for (const Bounds3& box : scene.meshes.front().primitiveSets.front().boxes)
+    spheres.push_back(sphereIn(box, static_cast<std::uint32_t>(spheres.size())));
+  ASSERT_GT(spheres.size(), 400u);
+  expectWeekend(scene, spheres, {}, 8, 60, 8);
+}
+
+const dvec3 kInFront(7, 1.2, 1.6);
+
+TEST(LessonOneWeekend, GlassReflectsAndRefracts) { expectOneSphere(1, kInFront, 1.2, {0, 10}, 6400, 0.006); }
+TEST(LessonOneWeekend, DiffuseSpheresFollowTheCosine) { expectOneSphere(2, kInFront, 1.2, {0, 10}); }
+TEST(LessonOneWeekend, MetalIsFuzzy) {
+  std::uint32_t index = 4;
+  while (materialOf(index).kind != Kind::metal || materialOf(index).fuzz < 0.3) index++;
+  expectOneSphere(index, kInFront, 1.2, {0, 10});
+}
+
+// Far from the plane in focus, the size of the lens decides how wide the edge of the sphere is.
+TEST(LessonOneWeekend, TheLensBlursWhatIsNotInFocus) {
+  expectOneSphere(2, kInFront, 0.7, {1.2, 4});
+  expectOneSphere(2, kInFront, 0.7, {1.2, 14});
+}
+
+TEST(LessonOneWeekend, PixelsAndFramesHaveDifferentSeeds) {
+  LessonOptions options;
+  options.width = kWeekendWidth;
+  options.height = kWeekendHeight;
+  options.set = {{"samples", "1"}};
+  // The ground alone. Without noise, or with the same noise in all pixels, adjacent pixels have similar values; with
+  // independent noise, the mean squared difference of adjacent pixels is twice the variance.
+  options.scene = lessonScene("21_one_weekend");
+  options.scene->meshes.front().primitiveSets.front().boxes.resize(1);
+  const LessonImage one = renderLesson("21_one_weekend", options);
+  double differences = 0, squares = 0, sum = 0;
+  for (std::uint32_t x = 0; x < kWeekendWidth; ++x) sum += one.at(x, 1).x;
+  for (std::uint32_t x = 0; x < kWeekendWidth; ++x) {
+    squares += std::pow(one.at(x, 1).x - sum / kWeekendWidth, 2);
+    if (x > 0) differences += std::pow(one.at(x, 1).x - one.at(x - 1, 1).x, 2);
+  }
+  EXPECT_GT(differences, squares) << "1 of 2 for independent noise";
+  // A second frame with the same samples would not change the mean.
+  options.frames = 2;
+  const LessonImage two = renderLesson("21_one_weekend", options);
+  int changed = 0;
+  for (std::uint32_t y = 0; y < kWeekendHeight; ++y)
+    for (std::uint32_t x = 0; x < kWeekendWidth; ++x) changed += glm::distance(one.at(x, y), two.at(x, y)) > 1e-3f;
+  EXPECT_GT(changed, 200);
 }
 
 }  // namespace
