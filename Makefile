@@ -57,7 +57,8 @@ bench: build ## Measure rays per second relative to the limit of the device (BEN
 	@$(BUILD)/bin/quintet_make_scenes $(SCENES)
 	@$(BUILD)/bin/quintet bench $(SCENES)/bench.glb $(BENCH_FLAGS)
 
-lessons: build ## Render the images of all lesson pages (docs/lessons)
+lessons: build ## Copy the excerpts into the lesson pages (docs/lessons) and render their images
+	@bash scripts/excerpts.sh
 	@bash scripts/lessons.sh $(BUILD)/bin/quintet
 
 reference: build ## Compare with the reference images and values (tests/reference/run)

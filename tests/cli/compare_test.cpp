@@ -2,6 +2,8 @@
 // `compare`: measures, images and exit status.
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "fixtures.h"
 #include "io/codec.h"
 
@@ -59,6 +61,40 @@ TEST_F(Compare, WritesImagesOfTheDifference) {
   EXPECT_EQ(readImage("diff.png").width, 32u);
   EXPECT_EQ(readImage("all.png").width, 3 * 32u + 8u);
   EXPECT_EQ(readImage("all.png").height, 16u);
+}
+
+// The left half is equal; the right half is black in one image and white in the other.
+TEST_F(Compare, DifferenceImagesShowWhereTheImagesDiffer) {
+  io::Image image = io::makeImage(64, 16, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  const auto fill = [&](std::uint8_t left, std::uint8_t right) {
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x)
+        for (auto& sample : image.pixel<std::uint8_t>(x, y)) sample = x < 32 ? left : right;
+  };
+  fill(90, 0);
+  write(folder_ / "dark.png", io::encodePng(image));
+  fill(90, 255);
+  write(folder_ / "light.png", io::encodePng(image));
+  const RunResult result =
+      quintet({"compare", "dark.png", "light.png", "-o", "where.png", "--side-by-side", "both.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto color = [](const io::Image& from, std::uint32_t x) {
+    const auto p = from.pixel<std::uint8_t>(x, 8);
+    return std::array<int, 3>{p[0], p[1], p[2]};
+  };
+  const io::Image where = readImage("where.png"), both = readImage("both.png");
+  EXPECT_EQ(color(where, 4), (std::array<int, 3>{0, 0, 0}));
+  const auto different = color(where, 60);
+  EXPECT_GT(different[0], 240);
+  EXPECT_GT(different[1], 200);
+  EXPECT_LT(different[2], different[1]);
+  // Both images and the error, with gaps of four pixels.
+  EXPECT_EQ(color(both, 10), (std::array<int, 3>{90, 90, 90}));
+  EXPECT_EQ(color(both, 50), (std::array<int, 3>{0, 0, 0}));
+  EXPECT_EQ(color(both, 68 + 10), (std::array<int, 3>{90, 90, 90}));
+  EXPECT_EQ(color(both, 68 + 50), (std::array<int, 3>{255, 255, 255}));
+  EXPECT_EQ(color(both, 136 + 4), color(where, 4));
+  EXPECT_EQ(color(both, 136 + 60), different);
 }
 
 TEST_F(Compare, MissingImage) { expectError(quintet({"compare", "a.png", "c.png"}), 1, {"c.png", "No such file"}); }

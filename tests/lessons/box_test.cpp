@@ -2,6 +2,7 @@
 // Lessons 12, 13 and 14: box, triangle and combined solids with intersection shaders, compared with the host.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 
 #include "solids.h"
@@ -181,6 +182,101 @@ TEST(LessonCsg, ShowsUnionIntersectionAndDifference) {
       1e-4, 0.15);
   for (const int count : hits) EXPECT_GT(count, 30);
   EXPECT_GT(holes, 10);
+}
+
+struct TreeHit {
+  double t = -1;
+  int leaf = -1;      // 0 box, 1 sphere, 2 to 4 cylinders along x, y and z
+  dvec3 normal{0};    // out of the combined solid, object space
+  double margin = 1;  // distance of the hit from the nearest other surface
+};
+
+// The first surface of the tree of lesson 14 along a ray in object space, by membership on both sides of all candidates.
+TreeHit treeHit(const HostRay& ray, double tmin) {
+  const auto radial = [](const dvec3& p, int axis) {
+    dvec3 q = p;
+    q[axis] = 0;
+    return q;
+  };
+  const auto distances = [&](const dvec3& p) {
+    const dvec3 q = glm::abs(p);
+    return std::array<double, 5>{std::max({q.x, q.y, q.z}) - 1, glm::length(p) - 1.35, glm::length(radial(p, 0)) - 0.6,
+                                 glm::length(radial(p, 1)) - 0.6, glm::length(radial(p, 2)) - 0.6};
+  };
+  const auto inside = [&](double t) {
+    const auto d = distances(ray.origin + t * ray.direction);
+    return d[0] < 0 && d[1] < 0 && d[2] > 0 && d[3] > 0 && d[4] > 0;
+  };
+  std::vector<std::pair<double, int>> candidates;
+  const auto add = [&](const std::optional<Interval>& interval, int leaf) {
+    if (interval) candidates.insert(candidates.end(), {{interval->in, leaf}, {interval->out, leaf}});
+  };
+  add(boxInterval(ray, dvec3(-1), dvec3(1)), 0);
+  add(sphereInterval(ray, dvec3(0), 1.35), 1);
+  for (int axis = 0; axis < 3; ++axis)
+    add(sphereInterval({radial(ray.origin, axis), radial(ray.direction, axis)}, dvec3(0), 0.6), 2 + axis);
+  TreeHit best;
+  for (const auto& [t, leaf] : candidates) {
+    if (t < tmin || (best.t > 0 && t >= best.t) || inside(t - 1e-5) == inside(t + 1e-5)) continue;
+    best = {t, leaf, dvec3(0), 1};
+  }
+  if (best.t < 0) return best;
+  const dvec3 p = ray.origin + best.t * ray.direction;
+  const auto d = distances(p);
+  for (int i = 0; i < 5; ++i)
+    if (i != best.leaf) best.margin = std::min(best.margin, std::abs(d[static_cast<std::size_t>(i)]));
+  if (best.leaf == 0) {
+    const dvec3 q = glm::abs(p);
+    const int axis = q.x > q.y && q.x > q.z ? 0 : q.y > q.z ? 1 : 2;
+    best.normal[axis] = glm::sign(p[axis]);
+  } else if (best.leaf == 1) {
+    best.normal = glm::normalize(p);
+  } else {
+    best.normal = -glm::normalize(radial(p, best.leaf - 2));
+  }
+  best.margin = std::min(best.margin, std::abs(glm::dot(best.normal, glm::normalize(ray.direction))));
+  return best;
+}
+
+TEST(LessonCsgTree, CombinesFiveLeavesWithTheirMaterials) {
+  const scene::Scene scene = lessonScene("14_csg_tree");
+  const mat4 world = scene.instances.front().worldFromObject;
+  const dvec3 toSun(0.48, 0.8, 0.36), side = glm::normalize(glm::cross(toSun, dvec3(1, 0, 0))),
+                                      other = glm::cross(toSun, side);
+  const dvec3 base[5] = {
+      {0.85, 0.62, 0.25}, {0.25, 0.45, 0.75}, {0.75, 0.2, 0.15}, {0.75, 0.2, 0.15}, {0.75, 0.2, 0.15}};
+  int leaves[5] = {0, 0, 0, 0, 0}, shadowed = 0;
+  expectPixels(
+      renderLesson("14_csg_tree"),
+      [&](dvec2 point) {
+        const HostRay ray = cameraRay({3, 2.4, 4}, {0, 0, 0}, {0, 1, 0}, 35, 1.5, point);
+        const TreeHit hit = treeHit(toObject(ray, world), 1e-4);
+        // Near the outline, floats can decide differently.
+        for (const double e : {-4e-3, 4e-3}) {
+          const TreeHit near = treeHit(toObject({ray.origin, ray.direction + e * side + 0.7 * e * other}, world), 1e-4);
+          if (near.leaf != hit.leaf) return kUndecided;
+        }
+        if (hit.t < 0) return glm::dvec4(0.1, 0.12, 0.16, 1);
+        if (hit.margin < 1e-2) return kUndecided;
+        const dvec3 normal = normalToWorld(hit.normal, world), position = ray.origin + hit.t * ray.direction;
+        const double cosine = glm::dot(normal, toSun);
+        if (std::abs(cosine) < 1e-3) return kUndecided;
+        bool dark = false;
+        if (cosine > 0) {
+          const auto blocked = [&](const dvec3& shift) {
+            return treeHit(toObject({position + 1e-4 * normal + shift, toSun}, world), 2e-4).t > 0;
+          };
+          dark = blocked(dvec3(0));
+          for (const dvec3& shift : {4e-3 * side, -4e-3 * side, 4e-3 * other, -4e-3 * other})
+            if (blocked(shift + std::abs(glm::dot(shift, normal)) * normal) != dark) return kUndecided;
+        }
+        leaves[hit.leaf]++;
+        shadowed += dark;
+        return glm::dvec4(base[hit.leaf] * (0.2 + (cosine > 0 && !dark ? 0.8 * cosine : 0.0)), 1);
+      },
+      2e-4, 0.3);
+  for (const int count : leaves) EXPECT_GT(count, 8);
+  EXPECT_GT(shadowed, 8);
 }
 
 }  // namespace

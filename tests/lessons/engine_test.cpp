@@ -73,13 +73,32 @@ TEST(LessonRecords, UsesHitGroupsRayTypesAndRecordData) {
   EXPECT_GT(free, 10);
 }
 
-TEST(LessonLambert, ShowsMirrorsShadowsAndTheGradient) {
+struct LambertLight {
+  dvec3 toLight{0.4, 1, 0.6};
+  dvec3 light{0.9, 0.85, 0.8};
+  dvec3 ambient{0.15, 0.17, 0.2};
+  double mirrorRoughness = 0.05;
+};
+
+std::string threeNumbers(const dvec3& v) {
+  return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+void expectLambert(const LambertLight& given, std::uint32_t width) {
   const scene::Scene scene = lessonScene("20_lambert");
-  const dvec3 toLight = glm::normalize(dvec3(0.4, 1, 0.6));
+  const dvec3 toLight = glm::normalize(given.toLight);
+  const double roughness[5] = {1, 0, 0.8, 0.8, 0};
+  LessonOptions options;
+  options.width = width;
+  options.height = width * 2 / 3;
+  options.set = {{"to_light", threeNumbers(given.toLight)},
+                 {"light", threeNumbers(given.light)},
+                 {"ambient", threeNumbers(given.ambient)},
+                 {"mirror_roughness", std::to_string(given.mirrorRoughness)}};
   const dvec3 base[5] = {{0.7, 0.68, 0.6}, {0.9, 0.9, 0.92}, {0.85, 0.4, 0.15}, {0.85, 0.4, 0.15}, {0.9, 0.9, 0.92}};
   int mirrored = 0, shadowed = 0;
   expectPixels(
-      renderLesson("20_lambert"),
+      renderLesson("20_lambert", options),
       [&](dvec2 point) {
         HostRay ray = cameraRay({3, 2.6, 6.5}, {0, 0.9, 0}, {0, 1, 0}, 38, 1.5, point);
         dvec3 weight(1);
@@ -94,7 +113,7 @@ TEST(LessonLambert, ShowsMirrorsShadowsAndTheGradient) {
           const dvec3 normal = front ? s.normal : -s.normal,
                       position = s.position + 1e-6 * (front ? s.faceNormal : -s.faceNormal);
           const dvec3 color = base[hit.instance];
-          if (hit.instance == 1 || hit.instance == 4) {
+          if (roughness[hit.instance] < given.mirrorRoughness) {
             if (bounce == 8) return kUndecided;
             mirrored++;
             weight *= color;
@@ -105,14 +124,27 @@ TEST(LessonLambert, ShowsMirrorsShadowsAndTheGradient) {
           const HostHit shadow = closestTriangle(scene, {position, toLight}, 1e-6, 1e5);
           if (cosine > 0 && shadow.margin < kMargin) return kUndecided;
           shadowed += shadow.t > 0;
-          const dvec3 sun = shadow.t < 0 ? dvec3(0.9, 0.85, 0.8) * cosine : dvec3(0);
-          return glm::dvec4(weight * color * (dvec3(0.15, 0.17, 0.2) + sun), 1);
+          const dvec3 sun = shadow.t < 0 ? given.light * cosine : dvec3(0);
+          return glm::dvec4(weight * color * (given.ambient + sun), 1);
         }
         return kUndecided;
       },
       2e-3, 0.25);
-  EXPECT_GT(mirrored, 100);
-  EXPECT_GT(shadowed, 40);
+  const int part = static_cast<int>(48 * 48 / (width * width));
+  EXPECT_GT(mirrored, given.mirrorRoughness > 0 ? 100 / part : -1);
+  EXPECT_GT(shadowed, 12 / part);
+}
+
+TEST(LessonLambert, ShowsMirrorsShadowsAndTheGradient) { expectLambert({}, 48); }
+TEST(LessonLambert, FollowsTheDirectionAndColorOfTheLight) {
+  expectLambert({{-1.5, 1.2, 0.4}, {0.2, 0.9, 0.5}, {0.3, 0.05, 0.1}, 0.05}, 24);
+}
+TEST(LessonLambert, MirrorsAreBelowTheLimitOfTheRoughness) {
+  LambertLight light;
+  light.mirrorRoughness = 0.9;
+  expectLambert(light, 24);
+  light.mirrorRoughness = 0;
+  expectLambert(light, 24);
 }
 
 }  // namespace

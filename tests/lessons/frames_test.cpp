@@ -75,6 +75,50 @@ TEST(LessonProgressive, ConvergesFasterThanRandomSamples) {
   EXPECT_LT(many, one / 8);
 }
 
+// A shift per pixel makes the errors of adjacent pixels different, and random points converge to the same image.
+TEST(LessonProgressive, AllPointsConvergeToTheSameImage) {
+  LessonOptions options;
+  options.frames = 256;
+  const LessonImage halton = renderLesson("09_progressive", options);
+  for (const char* points : {"1", "2"}) {
+    options.set = {{"points", points}};
+    const LessonImage image = renderLesson("09_progressive", options);
+    EXPECT_NE(image.outputs[0].data, halton.outputs[0].data);
+    dvec3 bias(0);
+    double squares = 0;
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x) {
+        const dvec3 d(image.at(x, y) - halton.at(x, y));
+        bias += d;
+        squares += glm::dot(d, d);
+      }
+    const double pixels = image.width * image.height;
+    EXPECT_LT(glm::length(bias) / pixels, 5e-4) << points;
+    EXPECT_LT(std::sqrt(squares / (3 * pixels)), 0.006) << points;
+  }
+}
+
+// The shift keeps the points of a pixel well distributed.
+TEST(LessonProgressive, ShiftedPointsConvergeFasterThanRandomPoints) {
+  LessonOptions options;
+  options.frames = 256;
+  const LessonImage reference = renderLesson("09_progressive", options);
+  const auto error = [&](const char* points) {
+    LessonOptions few;
+    few.frames = 64;
+    few.set = {{"points", points}};
+    const LessonImage image = renderLesson("09_progressive", few);
+    double sum = 0;
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x) {
+        const vec3 d(image.at(x, y) - reference.at(x, y));
+        sum += glm::dot(d, d);
+      }
+    return std::sqrt(sum);
+  };
+  EXPECT_LT(error("1"), 0.6 * error("2"));
+}
+
 TEST(LessonDynamic, MovesInstances) {
   for (const std::uint32_t frame : {0u, 7u, 25u}) {
     scene::Scene scene = lessonScene("19_dynamic");

@@ -84,20 +84,21 @@ HostHit closestTriangle(const scene::Scene& scene, const HostRay& ray, double tm
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
     const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-    const glm::dmat4 world(instance.worldFromObject);
+    // The ray in object space: t and barycentric coordinates are the same.
+    const glm::dmat4 objectFromWorld = glm::inverse(glm::dmat4(instance.worldFromObject));
+    const dvec3 origin(objectFromWorld * glm::dvec4(ray.origin, 1)),
+        direction(objectFromWorld * glm::dvec4(ray.direction, 0));
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       const scene::Geometry& geometry = mesh.geometries[g];
       for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const uvec3 v = geometry.triangles[t];
-        const auto corner = [&](std::uint32_t k) {
-          return dvec3(world * glm::dvec4(dvec3(geometry.positions[k]), 1.0));
-        };
-        const dvec3 a = corner(v.x), e1 = corner(v.y) - a, e2 = corner(v.z) - a;
-        const dvec3 p = glm::cross(ray.direction, e2);
+        const dvec3 a(geometry.positions[v.x]), e1 = dvec3(geometry.positions[v.y]) - a,
+                                                e2 = dvec3(geometry.positions[v.z]) - a;
+        const dvec3 p = glm::cross(direction, e2);
         const double det = glm::dot(e1, p);
         if (det == 0) continue;
-        const dvec3 s = ray.origin - a, q = glm::cross(s, e1);
-        const double u = glm::dot(s, p) / det, w = glm::dot(ray.direction, q) / det, distance = glm::dot(e2, q) / det;
+        const dvec3 s = origin - a, q = glm::cross(s, e1);
+        const double u = glm::dot(s, p) / det, w = glm::dot(direction, q) / det, distance = glm::dot(e2, q) / det;
         if (distance < tmin || distance > tmax) continue;
         margin = std::min({margin, std::abs(u), std::abs(w), std::abs(1 - u - w)});
         if (u < 0 || w < 0 || u + w > 1 || distance >= closest) continue;

@@ -2,6 +2,8 @@
 // Lessons 04 to 07: light, shadow and reflection, compared with the host.
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "lesson.h"
 
 namespace quintet::test {
@@ -39,9 +41,9 @@ TEST(LessonDiffuse, FollowsLambert) {
       2e-5);
 }
 
-void expectShadow(std::uint32_t frame) {
-  const scene::Scene scene = lessonScene("05_shadow");
+void expectShadow(std::uint32_t frame, const scene::Scene& scene) {
   LessonOptions options;
+  options.scene = scene;
   options.frames = frame + 1;
   const double turn = 2 * glm::pi<double>() * (frame % 45) / 45.0;
   const dvec3 lamp(4 * std::cos(turn), 5, 4 * std::sin(turn));
@@ -67,8 +69,16 @@ void expectShadow(std::uint32_t frame) {
   EXPECT_GT(dark, 100);
 }
 
-TEST(LessonShadow, CastsShadowsInTheFirstFrame) { expectShadow(0); }
-TEST(LessonShadow, MovesTheLamp) { expectShadow(16); }
+TEST(LessonShadow, CastsShadowsInTheFirstFrame) { expectShadow(0, lessonScene("05_shadow")); }
+TEST(LessonShadow, MovesTheLamp) { expectShadow(16, lessonScene("05_shadow")); }
+// What is behind the lamp casts no shadow.
+TEST(LessonShadow, EndsAtTheLamp) {
+  scene::Scene scene = lessonScene("05_shadow");
+  scene::Instance ceiling = scene.instances.front();
+  ceiling.worldFromObject = glm::translate(mat4(1.0f), vec3(0, 6, 0));
+  scene.instances.push_back(ceiling);
+  expectShadow(0, scene);
+}
 TEST(LessonShadow, RepeatsAfterAWholeTurn) {
   LessonOptions options;
   options.width = 24;
@@ -102,18 +112,30 @@ glm::dvec4 mirrorColor(const scene::Scene& scene, HostRay ray, double reflectanc
   return glm::dvec4(color, decided ? 1 : 0);
 }
 
-void expectMirrors(const std::string& name, double reflectance) {
+void expectMirrors(const std::string& name, double reflectance, int maxLevel = 5) {
   const scene::Scene scene = lessonScene(name);
   LessonOptions options;
   options.set = {{"reflectance", std::to_string(reflectance)}};
+  if (maxLevel != 5) options.set.emplace_back("maxLevel", std::to_string(maxLevel));
   expectPixels(
-      renderLesson(name, options), [&](dvec2 point) { return mirrorColor(scene, eyeRay(point, 1.5), reflectance, 5); },
-      2e-4, 0.25);
+      renderLesson(name, options),
+      [&](dvec2 point) { return mirrorColor(scene, eyeRay(point, 1.5), reflectance, maxLevel); }, 2e-4, 0.25);
 }
 
 TEST(LessonMirrorLoop, FollowsTheReflections) { expectMirrors("06_mirror_loop", 0.4); }
 TEST(LessonMirrorLoop, StopsWithoutReflectance) { expectMirrors("06_mirror_loop", 0.0); }
+// With 0.03, the third ray has a weight below the limit of 0.001; with 0.09, it is above the limit and visible.
+TEST(LessonMirrorLoop, StopsAtTheSmallestContribution) {
+  for (const double reflectance : {0.03, 0.09}) expectMirrors("06_mirror_loop", reflectance);
+}
+TEST(LessonMirrorLoop, StopsAtTheMaximumLevel) {
+  for (const int level : {1, 2, 3}) expectMirrors("06_mirror_loop", 0.9, level);
+}
 TEST(LessonMirrorRecursion, FollowsTheReflections) { expectMirrors("07_mirror_recursion", 0.4); }
+TEST(LessonMirrorRecursion, StopsAtTheSmallestContribution) {
+  for (const double reflectance : {0.03, 0.09}) expectMirrors("07_mirror_recursion", reflectance);
+}
+TEST(LessonMirrorRecursion, StopsAfterFiveLevels) { expectMirrors("07_mirror_recursion", 0.95); }
 TEST(LessonMirrorRecursion, GivesTheImageOfTheLoop) {
   const LessonImage loop = renderLesson("06_mirror_loop"), recursion = renderLesson("07_mirror_recursion");
   double worst = 0;

@@ -2,6 +2,8 @@
 // Lessons 08, 10 and 11: spheres with intersection shaders, compared with the closed form.
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "solids.h"
 
 namespace quintet::test {
@@ -40,9 +42,8 @@ SphereHit nearestSphere(const scene::Scene& scene, const HostRay& ray) {
   return best;
 }
 
-void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const SphereHit&)>& color, double tolerance) {
-  scene::Scene scene = lessonScene("10_sphere");
-  if (worldSpace) scene.instances.pop_back();  // without the ellipsoid, which needs object space
+void expectSpheres(const scene::Scene& scene, int show, bool worldSpace,
+                   const std::function<dvec3(const SphereHit&)>& color, double tolerance) {
   LessonOptions options;
   options.scene = scene;
   options.set = {{"show", std::to_string(show)}, {"worldSpace", worldSpace ? "true" : "false"}};
@@ -57,6 +58,12 @@ void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const Sp
       },
       tolerance, 0.1);
   EXPECT_GT(hits, 150);
+}
+
+void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const SphereHit&)>& color, double tolerance) {
+  scene::Scene scene = lessonScene("10_sphere");
+  if (worldSpace) scene.instances.pop_back();  // without the ellipsoid, which needs object space
+  expectSpheres(scene, show, worldSpace, color, tolerance);
 }
 
 const auto kNormal = [](const SphereHit& h) { return 0.5 + 0.5 * h.normal; };
@@ -74,6 +81,17 @@ TEST(LessonSphere, ShowsTextureCoordinates) {
         return dvec3(s - std::floor(s), std::acos(-h.local.z) / glm::pi<double>(), 0);
       },
       2e-3);
+}
+
+// The camera is inside of a sphere, so that the hits leave it.
+TEST(LessonSphere, ReportsWhereRaysLeave) {
+  for (const bool worldSpace : {false, true}) {
+    scene::Scene scene = lessonScene("10_sphere");
+    scene.instances.resize(1);
+    scene.instances[0].worldFromObject = glm::scale(glm::translate(mat4(1.0f), vec3(0.2f, -0.1f, 5.8f)), vec3(2.0f));
+    expectSpheres(scene, 3, worldSpace, kDistance, 2e-5);
+    expectSpheres(scene, 1, worldSpace, kNormal, 1e-4);
+  }
 }
 
 dvec3 colorOf(std::uint32_t primitive) {
@@ -181,6 +199,80 @@ void expectRefraction(double inside, double outside) {
         return refractionColor(cameraRay({0, 1.5, 6}, {0, 1.5, 0}, {0, 1, 0}, 35, 1.5, point), inside, outside);
       },
       5e-3, 0.25);
+}
+
+// The mean over all paths: each surface reflects a part of the light and refracts the rest. Clears `decided` if a path with
+// a visible weight is close to an edge.
+dvec3 fresnelMean(const HostRay& ray, int level, double weight, bool& decided) {
+  if (level == 8) return dvec3(0);
+  const dvec3 center(0, 1.5, 0);
+  const auto interval = sphereInterval(ray, center, 1.2);
+  const double floorT = -ray.origin.y / ray.direction.y;
+  const dvec3 onFloor = ray.origin + floorT * ray.direction;
+  const bool floor = floorT > 0 && std::abs(onFloor.x) < 8 && onFloor.z > -12 && onFloor.z < 6;
+  const dvec3 o = ray.origin - center;
+  const double along = glm::dot(o, ray.direction);
+  const bool visible = weight > 5e-3;
+  if (visible && along < 0 && std::abs(glm::length(o - along * ray.direction) - 1.2) < 5e-3) decided = false;
+  double t = -1;
+  bool entering = true;
+  if (interval && interval->out > 0) {
+    entering = interval->in > 0;
+    t = entering ? interval->in : interval->out;
+  }
+  if (floor && (t < 0 || floorT < t)) {
+    const auto near = [](double v) { return std::abs(2 * v - std::round(2 * v)) < 1e-2; };
+    if (visible && (near(onFloor.x) || near(onFloor.z))) decided = false;
+    const bool dark = (static_cast<int>(std::floor(2 * onFloor.x) + std::floor(2 * onFloor.z)) & 1) != 0;
+    return dark ? dvec3(0.1, 0.15, 0.2) : dvec3(0.85, 0.8, 0.7);
+  }
+  if (t < 0) return glm::mix(dvec3(0.9, 0.75, 0.6), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y);
+  const dvec3 position = ray.origin + t * ray.direction;
+  const dvec3 normal = (entering ? 1.0 : -1.0) * (position - center) / 1.2;
+  const double n1 = entering ? 1.0 : 1.5, n2 = entering ? 1.5 : 1.0;
+  const double c1 = -glm::dot(ray.direction, normal), sine = n1 / n2 * std::sqrt(std::max(0.0, 1 - c1 * c1));
+  const HostRay away{position + 1e-4 * normal, ray.direction + 2 * c1 * normal};
+  if (sine >= 1) return fresnelMean(away, level + 1, weight, decided);
+  // In terms of the angles (Fresnel's sine and tangent laws).
+  const double a1 = std::acos(std::min(1.0, c1)), a2 = std::asin(sine);
+  const double small = (n1 - n2) / (n1 + n2);
+  const double s = a1 < 1e-6 ? small : std::sin(a1 - a2) / std::sin(a1 + a2);
+  const double p = a1 < 1e-6 ? small : std::tan(a1 - a2) / std::tan(a1 + a2);
+  const double reflected = 0.5 * (s * s + p * p);
+  const dvec3 inward = n1 / n2 * (ray.direction + c1 * normal) - std::cos(a2) * normal;
+  return reflected * fresnelMean(away, level + 1, weight * reflected, decided) +
+         (1 - reflected) *
+             fresnelMean({position - 1e-4 * normal, inward}, level + 1, weight * (1 - reflected), decided);
+}
+
+TEST(LessonRefraction, FresnelGivesTheMeanOfBothRays) {
+  LessonOptions options;
+  options.width = 36;
+  options.height = 24;
+  options.frames = 1024;
+  options.set = {{"fresnel", "true"}};
+  const LessonImage image = renderLesson("08_refraction", options);
+  dvec3 bias(0);
+  int decidedPixels = 0;
+  std::uint32_t pixel = 0;
+  expectPixels(
+      image,
+      [&](dvec2 point) {
+        bool decided = true;
+        const HostRay ray = cameraRay({0, 1.5, 6}, {0, 1.5, 0}, {0, 1, 0}, 35, 1.5, point);
+        const dvec3 mean = fresnelMean(ray, 0, 1, decided);
+        const std::uint32_t x = pixel % options.width, y = pixel / options.width;
+        pixel++;
+        if (!decided) return kUndecided;
+        if (sphereInterval(ray, {0, 1.5, 0}, 1.2)) {
+          bias += dvec3(image.at(x, y)) - mean;
+          decidedPixels++;
+        }
+        return glm::dvec4(mean, 1);
+      },
+      0.04, 0.4);
+  ASSERT_GT(decidedPixels, 100);
+  EXPECT_LT(glm::length(bias) / decidedPixels, 1.5e-3);
 }
 
 TEST(LessonRefraction, RefractsGlassInAir) { expectRefraction(1.5, 1.0); }

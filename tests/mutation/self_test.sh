@@ -39,6 +39,12 @@ bin=$scratch/bin
 entry fine one BUG;                 expect 0 '1 texts, each found once' --texts
 entry gone four BUG;                expect 2 '\[gone\] shaders/a.glsl: text not found' --texts
 entry twice two BUG;                expect 2 '\[twice\] shaders/a.glsl: text found more than once' --texts
+entry spaces 'two two' BUG;         expect 0 '1 texts, each found once' --texts
+entry after two BUG; echo 'after one' >> "$scratch/table"; expect 0 '1 texts, each found once' --texts
+entry after one BUG; echo 'after two' >> "$scratch/table"; expect 2 '\[after\] shaders/a.glsl: text not found' --texts
+entry at two BUG; echo 'at 3 1' >> "$scratch/table"; expect 0 '1 texts, each found once' --texts
+entry at two BUG; echo 'at 4 1' >> "$scratch/table"; expect 2 '\[at\] shaders/a.glsl: text not found at line 4' --texts
+entry at two BUG; echo 'at 3 1' >> "$scratch/table"; expect 0 '^at .* caught ' "$bin"
 entry nowhere one BUG shaders/b;    expect 2 '\[nowhere\] shaders/b: no such file' --texts
 entry fine one BUG; entry gone four BUG; expect 2 '1 of 2 entries cannot be seeded' "$bin"
 entry fine one BUG;                 expect 0 '^fine .* caught  *Some.Test' "$bin"

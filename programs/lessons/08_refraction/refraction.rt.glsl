@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lesson 08: refraction. Rays change direction where they enter and leave a sphere (Snell's law) and are reflected
-// inside where they cannot leave (total internal reflection). The two media are `inside` and `outside` the sphere.
+// inside where they cannot leave (total internal reflection). The two media are `inside` and `outside` the sphere. With
+// `fresnel`, a ray is reflected at random with the probability of the Fresnel equations, and frames are averaged.
 // scene: refraction.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;          // color at the end of the path
   vec3 nextOrigin;
   vec3 nextDirection;  // zero if the path ends here
+  uint randomState;    // of the path
 };
 struct HitAttributeType {
   vec3 normal;         // outward, object space
@@ -15,9 +17,16 @@ struct HitAttributeType {
 uniform float inside;   // defaultval="1.5" min="1" max="3" help="Index of refraction of the sphere"
 uniform float outside;  // defaultval="1.0" min="1" max="3" help="Index of refraction of the surroundings"
 uniform int maxLevel;   // defaultval="8" min="1" max="32" help="Maximum number of rays of a path"
+uniform bool fresnel;   // defaultval="false" help="Reflect a part of the light at every angle, at random; needs several frames"
 
 const uint kindEntering = 1u;
 const uint kindLeaving = 2u;
+
+uint hash(uint x) {
+  x = x * 747796405u + 2891336453u;
+  x = ((x >> ((x >> 28u) + 4u)) ^ x) * 277803737u;
+  return (x >> 22u) ^ x;
+}
 /**** COMMON END ****/
 
 void main() { /**** RAY GENERATION SHADER ****/
@@ -25,6 +34,8 @@ void main() { /**** RAY GENERATION SHADER ****/
   float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);
   vec3 origin = vec3(0.0, 1.5, 6.0);
   vec3 direction = normalize(vec3(ndc * vec2(aspect, 1.0) * tan(0.5 * radians(35.0)), -1.0));
+  uint pixel = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
+  payload.randomState = hash(pixel ^ hash(uint(frameID)));
   vec3 color = vec3(0.0);
   for (int level = 0; level < maxLevel; ++level) {
     traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, origin, 0.0, direction, 1000.0, 0);
@@ -33,7 +44,8 @@ void main() { /**** RAY GENERATION SHADER ****/
     origin = payload.nextOrigin;
     direction = payload.nextDirection;
   }
-  gsnSetPixel(vec4(color, 1.0));
+  vec3 mean = gsnGetPreviousPixel().rgb;
+  gsnSetPixel(vec4(mean + (color - mean) / float(frameID + 1), 1.0));
 }
 
 void main() { /**** INTERSECTION SHADER ****/
@@ -59,6 +71,19 @@ void main() { /**** INTERSECTION SHADER ****/
   reportIntersectionEXT(t, t == tIn ? kindEntering : kindLeaving);
 }
 
+// Returns the fraction of unpolarized light that a smooth surface reflects (Fresnel 1823). `eta` is n1 / n2.
+float reflectedFraction(float cosIn, float eta) {
+  float cosOut = sqrt(max(0.0, 1.0 - eta * eta * (1.0 - cosIn * cosIn)));
+  float perpendicular = (eta * cosIn - cosOut) / (eta * cosIn + cosOut);
+  float parallel = (cosIn - eta * cosOut) / (cosIn + eta * cosOut);
+  return 0.5 * (perpendicular * perpendicular + parallel * parallel);
+}
+
+float random() {
+  payload.randomState = payload.randomState * 747796405u + 2891336453u;
+  return float(hash(payload.randomState) >> 8u) / 16777216.0;
+}
+
 void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 position = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
   if (gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT || gl_HitKindEXT == gl_HitKindBackFacingTriangleEXT) {
@@ -79,6 +104,7 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   float eta = entering ? outside / inside : inside / outside;
   vec3 next = refract(direction, normal, eta);
   bool reflected = next == vec3(0.0);
+  if (!reflected && fresnel) reflected = random() < reflectedFraction(-dot(direction, normal), eta);
   if (reflected) next = reflect(direction, normal);
   payload.color = vec3(0.0);  // used if the path is cut off here
   payload.nextOrigin = position + (reflected ? 1e-4 : -1e-4) * normal;

@@ -8,6 +8,7 @@ struct RayPayloadType {
 };
 
 uniform bool jitter;  // defaultval="true" help="Sample the area of the pixel instead of only its center"
+uniform int points;   // defaultval="0" min="0" max="2" help="Points: 0 Halton, 1 Halton with a shift per pixel, 2 random"
 /**** COMMON END ****/
 
 // Returns the radical inverse: the digits of `index` in this base, mirrored at the radix point (Halton 1960).
@@ -21,9 +22,29 @@ float halton(int index, int base) {
   return value;
 }
 
-void main() { /**** RAY GENERATION SHADER ****/
+uint hash(uint x) {
+  x = x * 747796405u + 2891336453u;
+  x = ((x >> ((x >> 28u) + 4u)) ^ x) * 277803737u;
+  return (x >> 22u) ^ x;
+}
+float uniformFrom(uint seed) { return float(hash(seed) >> 8u) / 16777216.0; }
+
+// Returns the point of this frame in the pixel, in [0, 1]².
+vec2 pointInPixel(uint pixel) {
+  if (points == 2) {
+    uint seed = hash(pixel ^ hash(uint(frameID)));
+    return vec2(uniformFrom(seed), uniformFrom(seed + 1u));
+  }
   // Starts at index 1, because index 0 is the corner of the pixel.
-  vec2 offset = jitter ? vec2(halton(frameID + 1, 2), halton(frameID + 1, 3)) : vec2(0.5);
+  vec2 point = vec2(halton(frameID + 1, 2), halton(frameID + 1, 3));
+  if (points == 0) return point;
+  // Cranley and Patterson (1976): a random shift per pixel, modulo 1.
+  return fract(point + vec2(uniformFrom(2u * pixel), uniformFrom(2u * pixel + 1u)));
+}
+
+void main() { /**** RAY GENERATION SHADER ****/
+  uint pixel = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
+  vec2 offset = jitter ? pointInPixel(pixel) : vec2(0.5);
   vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + offset) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
   float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);
   vec3 direction = normalize(vec3(ndc * vec2(aspect, 1.0) * tan(0.5 * radians(30.0)), -1.0));

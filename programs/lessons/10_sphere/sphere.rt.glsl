@@ -13,6 +13,7 @@ struct HitAttributeType {
 
 uniform bool worldSpace;  // defaultval="false" help="Intersect in world space; correct only for instances with uniform scale"
 uniform int show;         // defaultval="0" min="0" max="3" help="Quantity to show: 0 shaded, 1 normal, 2 texture coordinate, 3 distance / 10 and hit kind"
+uniform float unitDirection;  // defaultval="0" min="0" max="1" help="Normalize the direction in object space: 0 no (correct), 1 yes (wrong distances)"
 
 const float pi = 3.14159265359;
 /**** COMMON END ****/
@@ -58,6 +59,8 @@ void main() { /**** INTERSECTION SHADER ****/
     // Use the ray in object space. Its direction is *not* normalized, so t is the same in both spaces.
     o = gl_ObjectRayOriginEXT - center;
     d = gl_ObjectRayDirectionEXT;
+    // An experiment: with unitDirection = 1 the direction has length 1, and t is wrong for scaled instances.
+    if (unitDirection > 0.0) d *= pow(length(d), -unitDirection);
   }
   float t;
   uint kind = crossSphere(o, d, radius, gl_RayTminEXT, gl_RayTmaxEXT, t);

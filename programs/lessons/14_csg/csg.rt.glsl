@@ -93,13 +93,19 @@ void main() { /**** INTERSECTION SHADER ****/
   }
   if (t >= never) return;
 
-  vec3 p = o + t * d;
   vec3 normal;
   if (ofBall) {
-    normal = p / radius;
+    normal = (o + t * d) / radius;
   } else {
-    vec3 q = abs(p);
-    normal = q.x >= q.y && q.x >= q.z ? vec3(sign(p.x), 0.0, 0.0) : q.y >= q.z ? vec3(0.0, sign(p.y), 0.0) : vec3(0.0, 0.0, sign(p.z));
+    // As in lesson 12: the face is the one whose plane has this t.
+    vec3 ta = (vec3(-halfSide) - o) / d;
+    vec3 tb = (vec3(halfSide) - o) / d;
+    bool entersBox = t == box.x;
+    vec3 planes = entersBox ? min(ta, tb) : max(ta, tb);
+    vec3 gap = abs(planes - t);
+    int axis = gap.x <= gap.y && gap.x <= gap.z ? 0 : gap.y <= gap.z ? 1 : 2;
+    normal = vec3(0.0);
+    normal[axis] = (d[axis] > 0.0) == entersBox ? -1.0 : 1.0;
   }
   if (op == opDifference && ofBall) normal = -normal;  // the normal of the hole points into the sphere
   hit.normal = normal;

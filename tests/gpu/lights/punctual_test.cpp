@@ -76,6 +76,32 @@ TEST(SpotLight, FalloffOfTheExtension) {
   }
 }
 
+// Down to half angles of 1°, where the cosines differ by less than the limit of 0.001 of the extension.
+TEST(SpotLight, NarrowCones) {
+  for (const double outer : {1.0, 2.0, 2.6, 5.0, 20.0}) {
+    for (const double inner : {0.0, 0.5 * outer}) {
+      scene::Light light;
+      light.type = scene::LightType::spot;
+      light.intensity = vec3(10.0f);
+      light.direction = {0, 0, -1};
+      light.innerConeAngle = static_cast<float>(glm::radians(inner));
+      light.outerConeAngle = static_cast<float>(glm::radians(outer));
+      const LightScene scene(withLight(light), {});
+      const double cosInner = std::cos(glm::radians(inner)), cosOuter = std::cos(glm::radians(outer));
+      for (const double part : {0.0, 0.3, 0.7, 0.9, 1.1}) {
+        const double angle = glm::radians(part * outer);
+        const LightOut s = only(scene, 2.0f * vec3(std::sin(angle), 0, -std::cos(angle)));
+        const double a = std::clamp((std::cos(angle) - cosOuter) / std::max(0.001, cosInner - cosOuter), 0.0, 1.0);
+        // Cosines near 1 have the rounding error of floats.
+        const double rounding = 3e-7 / std::max(0.001, cosInner - cosOuter);
+        EXPECT_EQ(s.valid, part < 1 ? 1u : 0u) << outer << "° at " << part;
+        EXPECT_NEAR(s.radiance.y, 2.5 * a * a, 2.5 * 2 * rounding + 1e-5)
+            << inner << "° to " << outer << "° at " << part;
+      }
+    }
+  }
+}
+
 TEST(DirectionalLight, SameEverywhere) {
   scene::Light light;
   light.type = scene::LightType::directional;

@@ -183,6 +183,44 @@ TEST(LectureNames, BuiltInsSurviveANestedTrace) {
   EXPECT_EQ(last.w, triangleOf(1));  // the square that the inner ray hits: column 6 of the mirrored row
 }
 
+// Both forms of both matrices, for an instance with a rotation, different scales, a shear and a translation.
+TEST(LectureNames, MatricesInBothForms) {
+  const std::string text = closestHit(R"(
+  vec4 row = what < 3 ? vec4(gl_ObjectToWorldEXT[0][what], gl_ObjectToWorldEXT[1][what], gl_ObjectToWorldEXT[2][what], gl_ObjectToWorldEXT[3][what])
+           : what < 6 ? gl_ObjectToWorld3x4EXT[what - 3]
+           : what < 9 ? vec4(gl_WorldToObjectEXT[0][what - 6], gl_WorldToObjectEXT[1][what - 6], gl_WorldToObjectEXT[2][what - 6], gl_WorldToObjectEXT[3][what - 6])
+           : what < 12 ? gl_WorldToObject3x4EXT[what - 9] : vec4(0.0);
+  if (what >= 12) {
+    mat3 m;
+    gsnGetNormal3x3Matrix(gl_InstanceID, m);
+    row = vec4(m[0][what - 12], m[1][what - 12], m[2][what - 12], 0.0);
+  }
+  payload.value = row;)");
+  scene::Scene scene;
+  scene.meshes.emplace_back().geometries.emplace_back();
+  scene::Geometry& g = scene.meshes[0].geometries[0];
+  g.positions = {{-20, -20, 0}, {20, -20, 0}, {0, 40, 0}};
+  g.triangles = {{0, 1, 2}};
+  scene.instances.resize(1);
+  scene.instances[0].mesh = 0;
+  mat4 shear(1.0f);
+  shear[1][0] = 0.3f;
+  const mat4 world = glm::translate(mat4(1.0f), vec3(0.5f, -0.25f, 1.5f)) *
+                     glm::rotate(mat4(1.0f), 0.4f, glm::normalize(vec3(1, 2, 0.5f))) * shear *
+                     glm::scale(mat4(1.0f), vec3(2.0f, 0.5f, -1.25f));
+  scene.instances[0].worldFromObject = world;
+  const mat4 object = glm::inverse(world);
+  const glm::mat3 normal = glm::transpose(glm::inverse(glm::mat3(world)));
+  for (int what = 0; what < 15; ++what) {
+    const vec4 got = runLecture(text, scene, {.width = 1, .set = {"what=" + std::to_string(what)}}).at(0);
+    const int row = what % 3;
+    const vec4 expected = what < 6    ? vec4(world[0][row], world[1][row], world[2][row], world[3][row])
+                          : what < 12 ? vec4(object[0][row], object[1][row], object[2][row], object[3][row])
+                                      : vec4(normal[0][row], normal[1][row], normal[2][row], 0);
+    EXPECT_LT(glm::distance(got, expected), 1e-5f) << "row " << what;
+  }
+}
+
 TEST(LectureNames, CallablesHaveIndices) {
   const std::string text = R"(struct CallableDataType { float x; };
 void main() { /**** RAY GENERATION SHADER ****/

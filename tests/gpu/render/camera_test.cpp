@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection of known points by both kinds of cameras, and blur by a lens.
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "rendered_image.h"
@@ -84,6 +86,41 @@ TEST(Camera, BlursPointsOutOfFocus) {
     const double blur = 0.15 * std::abs(1.0 / distance - 1.0 / 4.0) * pixelsPerTangent;
     EXPECT_NEAR(squares / sum, a * a / 3.0 + 0.75 * 0.75 / 6.0 + blur * blur / 4.0, 0.03 * squares / sum) << distance;
     EXPECT_NEAR(centroid(image).x, 20.0f, 0.05f);
+  }
+}
+
+// A small square far from the plane in focus shows the lens: its variance is that of a uniform disk, and its fourth cumulant
+// tells a disk from a square or a ring. Cumulants of independent parts add up.
+TEST(Camera, TheLensIsAUniformDisk) {
+  scene::Camera camera = perspective(kEye, kTarget, 40.0f);
+  camera.apertureRadius = 0.3f;
+  camera.focusDistance = 4.0f;
+  const double pixelsPerTangent = 15.0 / std::tan(glm::radians(20.0));
+  for (const float distance : {2.0f, 10.0f}) {
+    const vec3 point = camera.worldFromCamera * vec4(0, 0, -distance, 1.0f);
+    const float half = 0.012f * distance;
+    ImageOptions options = wide();
+    options.batches = 256;
+    const RenderedImage image = renderImage(square(camera, point, half), options);
+    double sum = 0;
+    std::array<double, 2> squares{}, fourth{};
+    for (std::uint32_t y = 0; y < image.height(); ++y)
+      for (std::uint32_t x = 0; x < image.width(); ++x) {
+        const double v = image.at(x, y, 0).mean();
+        const std::array<double, 2> p{x + 0.5 - 20.0, y + 0.5 - 15.0};
+        sum += v;
+        for (std::size_t k = 0; k < 2; ++k) squares[k] += v * p[k] * p[k], fourth[k] += v * std::pow(p[k], 4);
+      }
+    const double a = half / distance * pixelsPerTangent, h = 0.75;
+    const double r = 0.3 * std::abs(1.0 / distance - 1.0 / 4.0) * pixelsPerTangent;
+    const double variance = a * a / 3 + h * h / 6 + r * r / 4;
+    const double cumulant = -2 * std::pow(a, 4) / 15 - std::pow(h, 4) / 60 - std::pow(r, 4) / 16;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double second = squares[k] / sum;
+      EXPECT_NEAR(second, variance, 0.04 * variance) << distance << ", axis " << k;
+      EXPECT_NEAR(fourth[k] / sum - 3 * second * second, cumulant, 0.15 * -cumulant + 0.05)
+          << distance << ", axis " << k;
+    }
   }
 }
 

@@ -103,6 +103,26 @@ TEST(AlbedoSeries, MatchesInsideABox) {
   expectUniform(renderImage(inside(box(vec3(-1.0f), vec3(1.0f)), 1.0f), options), series(3), {.error = 0.01});
 }
 
+// Contributions with at most one scattering event are never clamped, and all others are at most `clamp`.
+TEST(AlbedoSeries, ClampsLightAfterTwoScatterings) {
+  const auto image = [](const char* clamp) {
+    ImageOptions options = with("pathtracer", {"bounces=6", "roulette_start=64", std::string("clamp=") + clamp});
+    options.batches = 32;
+    return renderImage(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), options);
+  };
+  expectUniform(image("0.000001"), series(1), {.error = 0.01, .rounding = 1e-4});
+  expectUniform(image("1000000"), series(6), {.error = 0.01});
+  // Five further scattering events, each with a sample of the light and a hit.
+  const RenderedImage clamped = image("0.01");
+  const vec4 unclamped = series(1);
+  for (std::uint32_t y = 0; y < clamped.height(); ++y)
+    for (std::uint32_t x = 0; x < clamped.width(); ++x) {
+      const double added = clamped.at(x, y, 2).mean() - unclamped.b, error = 4 * clamped.at(x, y, 2).standardError();
+      EXPECT_LT(added, 10 * 0.01 + error);
+      EXPECT_GT(added, 0.01 - error);
+    }
+}
+
 TEST(AlbedoSeries, AgreesWithNaive) {
   expectUniform(renderImage(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12),
                 {.error = 0.01});

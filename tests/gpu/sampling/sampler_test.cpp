@@ -3,6 +3,7 @@
 // statistical test also runs on a deliberately wrong input, which it must reject.
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,33 @@ TEST(Sobol, OneDimensionalDrawsAreStratified) {
         seen[static_cast<std::size_t>(points[i].x * static_cast<float>(count))] = true;
       EXPECT_EQ(std::ranges::count(seen, true), static_cast<std::ptrdiff_t>(count));
     }
+  }
+}
+
+// The position of a point within its stratum of 1/64. Without the nested scramble (a digital shift alone), it would be the same
+// for all 64 points of a pixel; with equal scrambles of x and y, both positions of a point would be related.
+TEST(Sobol, PointsAreScrambledWithinTheirStrata) {
+  constexpr std::uint32_t kCount = 64;
+  const auto within = [](float v) { return double(v) * kCount - std::floor(double(v) * kCount); };
+  for (const char* kind : {"ONE", "TWO"}) {
+    const bool two = kind[0] == 'T';
+    double sum = 0, squares = 0, products = 0;
+    int count = 0;
+    for (const std::uint32_t dimension : {0u, 1u, 2u, 9u, 31u})
+      for (const uvec2 pixel : {uvec2(0, 0), uvec2(5, 2), uvec2(640, 359), uvec2(1023, 7)}) {
+        std::set<float> x, y;
+        for (const vec2& p : evaluate(series(pixel, dimension, kCount), {{kind, "1"}})) {
+          const double fx = within(p.x), fy = within(p.y);
+          x.insert(static_cast<float>(fx)), y.insert(static_cast<float>(fy));
+          sum += fx, squares += fx * fx, products += (fx - 0.5) * (fy - 0.5), count++;
+        }
+        EXPECT_GT(x.size(), 60u) << kind << ", draw " << dimension;
+        EXPECT_GT(y.size(), two ? 60u : 0u) << kind << ", draw " << dimension;
+      }
+    // 1,280 positions: standard errors of 0.008 and 0.0083 for the mean and the mean square, 0.0023 for the product.
+    EXPECT_NEAR(sum / count, 0.5, 0.04) << kind;
+    EXPECT_NEAR(squares / count, 1.0 / 3.0, 0.04) << kind;
+    EXPECT_NEAR(products / count, 0.0, two ? 0.012 : 1.0) << kind;
   }
 }
 
