@@ -11,12 +11,12 @@
 namespace quintet::job {
 namespace {
 
-constexpr render::Region kRegion{0, 0, 64, 100};
+constexpr render::Region kQueuedRegion{0, 0, 64, 100};
 
 std::vector<std::shared_ptr<const WorkBatch>> batches(std::uint32_t count) {
   std::vector<std::shared_ptr<const WorkBatch>> result;
   for (std::uint32_t b = 0; b < count; ++b)
-    result.push_back(std::make_shared<WorkBatch>(WorkBatch::ofRows(kRegion, {4 * b, 4 * b + 4})));
+    result.push_back(std::make_shared<WorkBatch>(WorkBatch::ofRows(kQueuedRegion, {4 * b, 4 * b + 4})));
   return result;
 }
 
