@@ -166,7 +166,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "sbt shader binding table offset stride", kOfScene},
     {"Q502", kError, "across_stages/arguments", "miss index is out of range",
      "The device reads a shader handle outside of the table and jumps to it.",
-     "Use an index of the miss table: kMiss_NAME in programs of Quintet.", "sbt shader binding"},
+     "Use an index of the miss records: kMiss_NAME in programs of Quintet.", "sbt shader binding table"},
     {"Q503", kError, "across_stages/arguments", "offset or stride of the hit records exceeds 4 bits",
      "The device uses only the low 4 bits, so a different record is selected silently.", "Keep both between 0 and 15.",
      "sbt shader binding table"},

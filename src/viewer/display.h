@@ -55,7 +55,7 @@ struct Display {
 };
 
 // `image`: linear premultiplied RGBA floats. `reference`: any image; null if there is none, and CompareMode is then
-// ignored. A reference of another size is scaled to fit, and centered. If its aspect ratio differs, the pixels beside it
+// ignored. A reference with a different size is scaled to fit, and centered. If its aspect ratio differs, the pixels beside it
 // are transparent in DisplayPixels::reference, and do not count in `error`.
 Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings);
 
