@@ -10,6 +10,7 @@
 # A text that contains double quotes is in single quotes.
 # The excerpt starts at the only line that contains the first text, and ends at the next line that contains the second one.
 # Without `to`, it ends where the braces that it opens are closed. Common indentation is removed.
+# shellcheck disable=SC2016  # backquotes in single quotes are Markdown
 set -euo pipefail
 script=$(realpath "${BASH_SOURCE[0]}")
 root=${EXCERPTS_ROOT-$(dirname "$script")/..}
@@ -82,8 +83,12 @@ if [ "${1-}" = --self-test ]; then
   bash "$script" page.md
   bash "$script" --check page.md
   expected=$'void f() {\n  if (a) { g(); }\n}'
-  [[ $(cat page.md) == *"$expected"* ]] && [[ $(cat page.md) != *old* ]] && [[ $(cat page.md) == *$'\n\nMore.\n'* ]] && [[ $(cat page.md) == *End. ]] ||
-    { echo "wrong page:" >&2; cat page.md >&2; exit 1; }
+  text=$(cat page.md)
+  if [[ $text != *"$expected"* || $text == *old* || $text != *$'\n\nMore.\n'* || $text != *End. ]]; then
+    echo "wrong page:" >&2
+    cat page.md >&2
+    exit 1
+  fi
   sed -i 's/g()/h()/' code.glsl
   ! bash "$script" --check page.md 2>/dev/null || { echo "a changed source was not found" >&2; exit 1; }
   for marker in 'gone.glsl from "a"' 'code.glsl from "int b"' 'code.glsl from "nothing"' 'code.glsl from "int a" to "nothing"'; do

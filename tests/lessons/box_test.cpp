@@ -83,6 +83,31 @@ TEST(LessonBox, ShowsTheInside) {
   expectBoxes({-1.4, 0.3, 0.1}, 1, [](const BoxHit& h) { return 0.5 + 0.5 * h.normal; });
 }
 
+// The shaded checkerboard, without the borders of its fields.
+TEST(LessonBox, ShowsACheckerboard) {
+  const scene::Scene scene = lessonScene("12_box");
+  int dark = 0, light = 0;
+  expectPixels(
+      renderLesson("12_box"),
+      [&](dvec2 point) {
+        bool decided = true;
+        const dvec3 eye(0, 0.5, 6);
+        const BoxHit hit =
+            nearestFace(scene, cameraRay(eye, eye - dvec3(0, 0, 1), {0, 1, 0}, 40, 1.5, point), 0.001, decided);
+        const dvec2 fields = 6.0 * hit.texCoord, border = glm::abs(fields - glm::round(fields));
+        if (!decided || (hit.t < 1e30 && std::min(border.x, border.y) < 1e-2)) return kUndecided;
+        if (hit.t >= 1e30) return glm::dvec4(0.1, 0.12, 0.16, 1);
+        const bool odd = ((static_cast<int>(fields.x) + static_cast<int>(fields.y)) & 1) != 0;
+        (odd ? dark : light)++;
+        return glm::dvec4((odd ? dvec3(0.45, 0.2, 0.15) : dvec3(0.9, 0.8, 0.65)) *
+                              (0.2 + 0.8 * std::abs(glm::dot(hit.normal, glm::normalize(dvec3(1, 2, 3))))),
+                          1);
+      },
+      1e-4, 0.15);
+  EXPECT_GT(dark, 60);
+  EXPECT_GT(light, 60);
+}
+
 TEST(LessonTriangle, AgreesWithTheBuiltInTest) {
   // The triangles on the host: those of the mesh, and for a box the one inside it.
   scene::Scene scene = lessonScene("13_triangle");

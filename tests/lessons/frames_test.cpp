@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "lesson.h"
 #include "scene/animation/keyframes.h"
 
@@ -117,6 +119,29 @@ TEST(LessonProgressive, ShiftedPointsConvergeFasterThanRandomPoints) {
     return std::sqrt(sum);
   };
   EXPECT_LT(error("1"), 0.6 * error("2"));
+}
+
+// In the first frame, an edge through the middle of a row of pixels is on both sides of their points, in both directions.
+TEST(LessonProgressive, EachPixelHasItsOwnShiftInBothDirections) {
+  LessonOptions options;
+  options.set = {{"points", "1"}};
+  const float half = 6.0f * std::tan(glm::radians(15.0f));
+  for (const bool horizontal : {true, false}) {
+    scene::Scene scene = lessonScene("09_progressive");
+    scene.instances.resize(1);
+    // The upper edge crosses row 16, or the right edge crosses column 24.
+    const vec3 center =
+        horizontal ? vec3(0, 1 + half * (33.0f / 32 - 1) - 0.5f, 0) : vec3(half * 1.5f * (49.0f / 48 - 1) - 0.5f, 1, 0);
+    const vec3 size = horizontal ? vec3(20, 1, 0.002f) : vec3(1, 20, 0.002f);
+    scene.instances[0].worldFromObject = glm::scale(glm::translate(mat4(1.0f), center), size);
+    options.scene = scene;
+    const LessonImage image = renderLesson("09_progressive", options);
+    int hits = 0;
+    const std::uint32_t count = horizontal ? image.width : image.height;
+    for (std::uint32_t i = 0; i < count; ++i) hits += (horizontal ? image.at(i, 16) : image.at(24, i)).x > 0.1f;
+    EXPECT_GT(hits, static_cast<int>(count / 5)) << horizontal;
+    EXPECT_LT(hits, static_cast<int>(count * 4 / 5)) << horizontal;
+  }
 }
 
 TEST(LessonDynamic, MovesInstances) {

@@ -75,7 +75,7 @@ TEST(LessonShadow, MovesTheLamp) { expectShadow(16, lessonScene("05_shadow")); }
 TEST(LessonShadow, EndsAtTheLamp) {
   scene::Scene scene = lessonScene("05_shadow");
   scene::Instance ceiling = scene.instances.front();
-  ceiling.worldFromObject = glm::translate(mat4(1.0f), vec3(0, 6, 0));
+  ceiling.worldFromObject = glm::scale(glm::translate(mat4(1.0f), vec3(0, 6, 0)), vec3(5.0f));
   scene.instances.push_back(ceiling);
   expectShadow(0, scene);
 }

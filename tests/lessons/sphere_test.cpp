@@ -94,6 +94,30 @@ TEST(LessonSphere, ReportsWhereRaysLeave) {
   }
 }
 
+// The shaded checkerboard, without the borders of its fields.
+TEST(LessonSphere, ShowsACheckerboard) {
+  const scene::Scene scene = lessonScene("10_sphere");
+  int dark = 0, light = 0;
+  expectPixels(
+      renderLesson("10_sphere"),
+      [&](dvec2 point) {
+        const SphereHit hit = nearestSphere(scene, cameraRay({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 40, 1.5, point));
+        if (!hit.decided) return kUndecided;
+        if (hit.t >= 1e30) return glm::dvec4(0.1, 0.12, 0.16, 1);
+        const double turn = std::atan2(hit.local.y, hit.local.x) / (2 * glm::pi<double>());
+        const dvec2 fields(16 * (turn - std::floor(turn)), 8 * std::acos(-hit.local.z) / glm::pi<double>());
+        const dvec2 border = glm::abs(fields - glm::round(fields));
+        if (std::min(border.x, border.y) < 2e-2) return kUndecided;
+        const bool odd = ((static_cast<int>(fields.x) + static_cast<int>(fields.y)) & 1) != 0;
+        (odd ? dark : light)++;
+        const double lit = 0.15 + 0.85 * std::max(0.0, glm::dot(hit.normal, glm::normalize(dvec3(1, 1.5, 2))));
+        return glm::dvec4((odd ? dvec3(0.2, 0.4, 0.6) : dvec3(0.9, 0.85, 0.7)) * lit, 1);
+      },
+      1e-3, 0.25);
+  EXPECT_GT(dark, 60);
+  EXPECT_GT(light, 60);
+}
+
 dvec3 colorOf(std::uint32_t primitive) {
   std::uint32_t h = primitive * 747796405u + 2891336453u;
   h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
