@@ -45,6 +45,7 @@ export class Lab {
   private pixelRequest = 0;
   private hoverTimer: ReturnType<typeof setTimeout> | undefined;
   private toldCamera = false;
+  private wasConnected = false;
   private readonly hadLesson = stored("lesson.open", false);
 
   private readonly session: Session;
@@ -79,7 +80,12 @@ export class Lab {
 
   constructor() {
     this.session = new Session({
-      onStatus: () => this.showStatus(),
+      onStatus: () => {
+        const connected = this.session.connection === "open";
+        if (connected && !this.wasConnected) void this.workspace.save();
+        this.wasConnected = connected;
+        this.showStatus();
+      },
       onOpened: (opened) => {
         this.workspace.parameters = opened.description.parameters;
         this.image.reset();
@@ -327,7 +333,11 @@ export class Lab {
       event.preventDefault();
       void this.upload([...event.dataTransfer!.files]);
     });
-    addEventListener("focus", () => void this.workspace.refresh());
+    addEventListener("focus", () => {
+      void this.workspace.refresh();
+      // The user may have opened the new address in another tab.
+      if (this.session.connection === "refused" || this.session.connection === "full") this.session.connect();
+    });
     setInterval(() => {
       if (document.visibilityState === "visible" && this.session.connection === "open") void this.workspace.refresh();
     }, kPollInterval);
