@@ -89,7 +89,7 @@ export class Lab {
       onOpened: (opened) => {
         this.workspace.parameters = opened.description.parameters;
         this.image.reset();
-        this.view.showOpened(opened, this.usesCamera());
+        this.view.showOpened(opened);
         replace(this.output, opened.description.outputs.map((output) => h("option", { value: output.name, title: output.help }, output.kind === "heat" ? `${output.name} (heat map)` : output.name)));
         this.showScenes();
         this.showStatus();
@@ -210,6 +210,8 @@ export class Lab {
     replace(document.body, this.header(), h("main", {}, this.outer.element));
     this.connectCamera();
     this.connectPage();
+    this.parameters.clear();
+    this.undoButton.disabled = this.redoButton.disabled = true;
     this.showDock();
     this.showSide();
     this.showSaveState();
@@ -468,6 +470,9 @@ export class Lab {
     this.pixelPanel.clear();
     this.pipeline.show(undefined, "The diagram appears when the program compiles.");
     this.workspace.parameters = [];
+    this.parameters.clear();
+    this.undoButton.disabled = this.redoButton.disabled = true;
+    replace(this.output);
     this.workspace.open(program);
     this.workspace.setDiagnostics(program.diagnostics);
     this.problems.show(program.diagnostics, this.checked);
@@ -538,7 +543,7 @@ export class Lab {
     const input = h("input", { type: "text", value: proposal, "aria-label": "Folder" });
     const answer = await ask(
       "Copy the built-in program",
-      [h("p", {}, `${message}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
+      [h("p", {}, `${message.charAt(0).toUpperCase()}${message.slice(1)}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
       [
         { label: "Cancel", value: false },
         { label: "Copy", value: true, primary: true },
@@ -777,6 +782,8 @@ export class Lab {
   private showFacts(): void {
     const state = this.session.state;
     this.step.hidden = this.first.hidden = !state?.frames;
+    this.output.hidden = this.output.options.length === 0;
+    this.play.hidden = !state;
     const playing = this.playing;
     if (this.play.dataset["icon"] !== String(playing)) {
       this.play.dataset["icon"] = String(playing);
@@ -784,7 +791,6 @@ export class Lab {
     }
     this.play.title = state?.frames ? (playing ? "Pause at this frame" : "Play frames") : playing ? "Pause refinement" : "Continue refinement";
     this.play.setAttribute("aria-label", this.play.title);
-    this.play.disabled = !state;
     if (!state || !this.session.hasImage) {
       replace(this.facts);
       return;
@@ -846,7 +852,7 @@ export class Lab {
     const connect = () => button("Connect now", () => session.connect());
 
     let dot = "good";
-    let label = session.opened?.device ?? "";
+    let label = session.opened?.device ?? "Connected";
     if (session.connection !== "open") {
       dot = session.connection === "connecting" ? "busy" : "bad";
       label = session.connection === "connecting" ? "Connecting" : "No connection";

@@ -47,6 +47,13 @@ export class ParametersPanel {
 
   constructor(private readonly host: ParametersHost) {}
 
+  // Until the program is open.
+  clear(): void {
+    this.shown = "";
+    this.controls.clear();
+    replace(this.element, h("p", { class: "empty" }, "The parameters appear when the program compiles."));
+  }
+
   // `linear`: colors of the program are linear.
   show(parameters: readonly ParameterDescription[], values: Readonly<Record<string, ParameterValue>>, linear: boolean): void {
     const key = JSON.stringify([parameters, linear]);

@@ -297,7 +297,7 @@ export class Workspace {
         break;
       } catch (error) {
         const failure = error as ApiError;
-        if (failure.status === 0) {
+        if (failure.status !== 409) {
           this.fail(failure.message);
           return false;
         }
