@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket connection to a session: sends commands, dispatches events, and connects again after a loss. Whoever owns it
+// A WebSocket connection to a session: sends commands, dispatches events, and connects again after a loss. Its owner
 // sends `open` each time `onConnect` is called.
 import { type Command, type EventName, type EventOf, type ImageMessage, parseImage, type ServerEvent } from "./protocol";
 

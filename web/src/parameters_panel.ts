@@ -208,9 +208,6 @@ export class ParametersPanel {
         this.host.set(parameter.name, current);
       }),
     );
-    fields.forEach((field) => field.setAttribute("step", String(sliderRange(parameter, 0).step * 10)));
-    // Any number is valid, not only multiples of the step.
-    fields.forEach((field) => field.addEventListener("focus", () => field.setAttribute("step", "any")));
     if (fields[0]) fields[0].id = id;
     return {
       element: h("div", { class: "control vector" }, fields),
