@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program that a page sends instead of a name (the key `files` of `open`): its files in a private temporary folder, which
-// is removed at the end.
+// A program that a page sends instead of a name (the key `files` of `open`): its files in a private temporary folder. The
+// folder is removed with the object, and by the server if the process of the worker has ended before.
 #ifndef QUINTET_LAB_UNSAVED_PROGRAM_H
 #define QUINTET_LAB_UNSAVED_PROGRAM_H
+
+#include <sys/types.h>
 
 #include <filesystem>
 #include <string>
@@ -28,6 +30,9 @@ class UnsavedProgram {
  private:
   std::filesystem::path folder_;
 };
+
+// Removes the folders of a process that has ended.
+void removeUnsavedPrograms(pid_t process);
 
 }  // namespace quintet::lab
 #endif

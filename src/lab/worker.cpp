@@ -150,12 +150,15 @@ class Worker : public job::Observer {
       const double wait =
           session_ && !isResting() ? std::min(kWatchSeconds, session_->secondsUntilWork()) : kWatchSeconds;
       for (const Inbox::Message& message : inbox_.take(wait)) handle(message);
-      if (retry_ && retryWatcher_->pending()) {
+      if (retry_ && (retryDue_ || retryWatcher_->pending())) {
         retryWatcher_->wait(0);
         const OpenSession again = *retry_;
         guarded("", [&] { open(again); });
       }
-      if (session_) guarded("", [&] { work(); });
+      if (session_ && !guarded("", [&] { work(); }) && session_) {  // it would fail again and again
+        session_.reset();
+        retryAfterSave(opened_, {});
+      }
       reportState();
       reportAlive();
     }
@@ -206,11 +209,10 @@ class Worker : public job::Observer {
     const std::optional<std::string> hold = std::exchange(hold_, std::nullopt);
     if (!hold) return open(command);
     session_.reset();
+    loadTime_ = parseNumber<double>(*hold).value_or(0);
     retryAfterSave(command, {});
-    if (retry_ && savedSince(retryWatcher_->watched(), parseNumber<double>(*hold).value_or(0))) open(command);
   }
 
-  // A user can have corrected the program while the worker before this one still ran.
   static bool savedSince(const job::WatchList& list, double seconds) {
     const auto isNew = [&](const fs::path& file) {
       std::error_code error;
@@ -315,6 +317,7 @@ class Worker : public job::Observer {
   void open(const OpenSession& command) {
     reportLoad();
     retry_.reset();
+    retryDue_ = false;
     session_.reset();
     progress_ = {};
     imagePending_ = false;
@@ -322,6 +325,7 @@ class Worker : public job::Observer {
       start(command);
     } catch (const ProgramError& error) {
       retryAfterSave(command, error.diagnostics());
+      describeRejected(loadedName(command));
       throw;
     } catch (const NameError&) {
       throw;
@@ -334,11 +338,16 @@ class Worker : public job::Observer {
     }
   }
 
+  // The name for program::loadProgram().
+  std::string loadedName(const OpenSession& command) const {
+    return unsaved_ ? unsaved_->folder().string() : command.program;
+  }
+
   void start(const OpenSession& command) {
     unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(command.files);
     if (!unsaved_) loadableName(project_, command.program);  // throws
     interactive::SessionRequest request;
-    request.program = unsaved_ ? unsaved_->folder().string() : command.program;
+    request.program = loadedName(command);
     if (!command.scene.empty()) {
       project_.locate(command.scene);  // throws
       request.render.scene = command.scene;
@@ -415,6 +424,8 @@ class Worker : public job::Observer {
     if (files.files.empty() && files.folders.empty()) return;
     retryWatcher_.emplace().watch(std::move(files));
     retry_ = command;
+    // A user can have corrected the program while it was loaded, or while the worker before this one still ran.
+    retryDue_ = savedSince(retryWatcher_->watched(), loadTime_);
   }
 
   // Files that a command names must be in the project.
@@ -467,6 +478,10 @@ class Worker : public job::Observer {
         values_.reset();
       } else if (const auto* found = std::get_if<interactive::DiagnosticsFound>(&event)) {
         send(diagnosticsJson(found->diagnostics, hasErrors(found->diagnostics)));
+        if (hasErrors(found->diagnostics))
+          describeRejected(loadedName(opened_));
+        else
+          graphOutdated_ = true;  // the version before an error is back
       } else {
         if (std::holds_alternative<interactive::Restarted>(event)) {
           progress_ = {};
@@ -528,10 +543,24 @@ class Worker : public job::Observer {
     const interactive::Session& session = requireSession();
     graphOutdated_ = false;
     const program::SceneFacts facts = check::sceneFacts(session.scene());
+    describeGraph(session.program(), &facts, id);
+  }
+
+  void describeGraph(const program::Program& program, const program::SceneFacts* facts, const std::string& id) {
     const check::CheckResult result =
-        check::check(session.program(), engine_->compiler(), &facts, job::deviceLimits(engine_->context().info()));
-    const auto model = check::describePipeline(session.program(), engine_->compiler(), &facts, result);
+        check::check(program, engine_->compiler(), facts, job::deviceLimits(engine_->context().info()));
+    const auto model = check::describePipeline(program, engine_->compiler(), facts, result);
     if (model) send(withId(graphJson(check::pipelineJson(*model)), id));
+  }
+
+  // The graph of a version that compiles, but does not pass the check: it marks what the diagnostics name.
+  void describeRejected(const std::string& program) {
+    try {
+      std::optional<program::SceneFacts> facts;
+      if (session_) facts = check::sceneFacts(session_->scene());
+      describeGraph(program::loadProgram(program), facts ? &*facts : nullptr, "");
+    } catch (const Error&) {  // its diagnostics were sent
+    }
   }
 
   void reportState() {
@@ -543,8 +572,8 @@ class Worker : public job::Observer {
   }
 
   void reportLoad() {
-    const double now = secondsSince1970(std::chrono::system_clock::now());
-    channel_.write(FrameKind::control, controlJson({Control::loads, fmt::format("{}", now)}));
+    loadTime_ = secondsSince1970(std::chrono::system_clock::now());
+    channel_.write(FrameKind::control, controlJson({Control::loads, fmt::format("{}", loadTime_)}));
   }
 
   void reportAlive() {
@@ -564,6 +593,8 @@ class Worker : public job::Observer {
   OpenSession opened_;                // of the session
   std::optional<OpenSession> retry_;  // failed; repeated when one of the files is saved
   std::optional<job::SourceWatcher> retryWatcher_;
+  bool retryDue_ = false;            // a file was saved before it was watched
+  double loadTime_ = 0;              // of the last attempt to load the program, seconds since 1970
   std::optional<std::string> hold_;  // message of Control::hold
   bool paused_ = false;
   std::uint64_t batches_ = 0;  // to render while paused

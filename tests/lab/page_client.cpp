@@ -17,7 +17,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>

@@ -61,7 +61,7 @@ struct ReceivedImage {
   std::string file;
 };
 
-// A WebSocket. All functions fail the test and throw if nothing arrives within `seconds`.
+// A WebSocket. All functions throw std::runtime_error if nothing arrives within `seconds`.
 class PageClient {
  public:
   explicit PageClient(const LabProcess& server, const Headers& headers = {});

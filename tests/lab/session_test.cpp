@@ -2,6 +2,7 @@
 // Sessions of pages: a worker process each, on the device.
 #include <signal.h>  // NOLINT: kill() of POSIX
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <thread>
@@ -209,6 +210,25 @@ TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {
   done(page, 1);
   page.send({{"do", "environment"}, {"source", "/etc/passwd"}});
   EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("is not a name"));
+}
+
+TEST_F(LabSession, RendersAProgramThatIsNotSavedAndLeavesNoFiles) {
+  const LabProcess server = start();
+  const auto unsaved = [](pid_t worker) {
+    const std::string prefix = "quintet-lab-" + std::to_string(worker) + "-";
+    return std::ranges::count_if(
+        fs::directory_iterator(fs::temp_directory_path()),
+        [&](const fs::directory_entry& entry) { return entry.path().filename().string().starts_with(prefix); });
+  };
+  PageClient page(server);
+  page.send({{"do", "open"}, {"files", {{"a.rt.glsl", kPlain}}}, {"samples", 2}, {"id", 1}});
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));
+  ASSERT_EQ(server.workers().size(), 1u);
+  const pid_t worker = server.workers().front();
+  EXPECT_EQ(unsaved(worker), 1);
+  page.close();
+  for (int i = 0; i < 250 && unsaved(worker) > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(unsaved(worker), 0);
 }
 
 TEST_F(LabSession, SurvivesAnEndlessShader) {

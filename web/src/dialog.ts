@@ -67,6 +67,8 @@ export function notify(text: string, kind: "info" | "error" = "info"): void {
     area = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
     document.body.append(area);
   }
+  // A message that is still shown is not repeated.
+  for (const shown of area.children) if (shown.firstElementChild?.textContent === text) shown.remove();
   const toast = h(
     "div",
     { class: `toast ${kind}`, role: kind === "error" ? "alert" : undefined },

@@ -45,6 +45,7 @@ export class Lab {
   private pixelRequest = 0;
   private hoverTimer: ReturnType<typeof setTimeout> | undefined;
   private toldCamera = false;
+  private wasConnected = false;
   private readonly hadLesson = stored("lesson.open", false);
 
   private readonly session: Session;
@@ -79,11 +80,16 @@ export class Lab {
 
   constructor() {
     this.session = new Session({
-      onStatus: () => this.showStatus(),
+      onStatus: () => {
+        const connected = this.session.connection === "open";
+        if (connected && !this.wasConnected) void this.workspace.save();
+        this.wasConnected = connected;
+        this.showStatus();
+      },
       onOpened: (opened) => {
         this.workspace.parameters = opened.description.parameters;
         this.image.reset();
-        this.view.showOpened(opened, this.usesCamera());
+        this.view.showOpened(opened);
         replace(this.output, opened.description.outputs.map((output) => h("option", { value: output.name, title: output.help }, output.kind === "heat" ? `${output.name} (heat map)` : output.name)));
         this.showScenes();
         this.showStatus();
@@ -204,6 +210,8 @@ export class Lab {
     replace(document.body, this.header(), h("main", {}, this.outer.element));
     this.connectCamera();
     this.connectPage();
+    this.parameters.clear();
+    this.undoButton.disabled = this.redoButton.disabled = true;
     this.showDock();
     this.showSide();
     this.showSaveState();
@@ -327,7 +335,11 @@ export class Lab {
       event.preventDefault();
       void this.upload([...event.dataTransfer!.files]);
     });
-    addEventListener("focus", () => void this.workspace.refresh());
+    addEventListener("focus", () => {
+      void this.workspace.refresh();
+      // The user may have opened the new address in another tab.
+      if (this.session.connection === "refused" || this.session.connection === "full") this.session.connect();
+    });
     setInterval(() => {
       if (document.visibilityState === "visible" && this.session.connection === "open") void this.workspace.refresh();
     }, kPollInterval);
@@ -458,6 +470,9 @@ export class Lab {
     this.pixelPanel.clear();
     this.pipeline.show(undefined, "The diagram appears when the program compiles.");
     this.workspace.parameters = [];
+    this.parameters.clear();
+    this.undoButton.disabled = this.redoButton.disabled = true;
+    replace(this.output);
     this.workspace.open(program);
     this.workspace.setDiagnostics(program.diagnostics);
     this.problems.show(program.diagnostics, this.checked);
@@ -528,7 +543,7 @@ export class Lab {
     const input = h("input", { type: "text", value: proposal, "aria-label": "Folder" });
     const answer = await ask(
       "Copy the built-in program",
-      [h("p", {}, `${message}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
+      [h("p", {}, `${message.charAt(0).toUpperCase()}${message.slice(1)}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
       [
         { label: "Cancel", value: false },
         { label: "Copy", value: true, primary: true },
@@ -767,6 +782,8 @@ export class Lab {
   private showFacts(): void {
     const state = this.session.state;
     this.step.hidden = this.first.hidden = !state?.frames;
+    this.output.hidden = this.output.options.length === 0;
+    this.play.hidden = !state;
     const playing = this.playing;
     if (this.play.dataset["icon"] !== String(playing)) {
       this.play.dataset["icon"] = String(playing);
@@ -774,7 +791,6 @@ export class Lab {
     }
     this.play.title = state?.frames ? (playing ? "Pause at this frame" : "Play frames") : playing ? "Pause refinement" : "Continue refinement";
     this.play.setAttribute("aria-label", this.play.title);
-    this.play.disabled = !state;
     if (!state || !this.session.hasImage) {
       replace(this.facts);
       return;
@@ -836,7 +852,7 @@ export class Lab {
     const connect = () => button("Connect now", () => session.connect());
 
     let dot = "good";
-    let label = session.opened?.device ?? "";
+    let label = session.opened?.device ?? "Connected";
     if (session.connection !== "open") {
       dot = session.connection === "connecting" ? "busy" : "bad";
       label = session.connection === "connecting" ? "Connecting" : "No connection";

@@ -47,6 +47,13 @@ export class ParametersPanel {
 
   constructor(private readonly host: ParametersHost) {}
 
+  // Until the program is open.
+  clear(): void {
+    this.shown = "";
+    this.controls.clear();
+    replace(this.element, h("p", { class: "empty" }, "The parameters appear when the program compiles."));
+  }
+
   // `linear`: colors of the program are linear.
   show(parameters: readonly ParameterDescription[], values: Readonly<Record<string, ParameterValue>>, linear: boolean): void {
     const key = JSON.stringify([parameters, linear]);
@@ -201,9 +208,6 @@ export class ParametersPanel {
         this.host.set(parameter.name, current);
       }),
     );
-    fields.forEach((field) => field.setAttribute("step", String(sliderRange(parameter, 0).step * 10)));
-    // Any number is valid, not only multiples of the step.
-    fields.forEach((field) => field.addEventListener("focus", () => field.setAttribute("step", "any")));
     if (fields[0]) fields[0].id = id;
     return {
       element: h("div", { class: "control vector" }, fields),

@@ -122,7 +122,8 @@ function payloadFacts(before: ExplanationEvent, after: ExplanationEvent | undefi
   for (const name of names) {
     const old = formatValue(before[name]);
     const now = after ? formatValue(after[name]) : old;
-    facts.push([`${String(before["variable"] ?? "payload")}.${name}`.replace(/\.value$/, ""), old === now ? old : `${old} → ${now}`]);
+    // Members have their full names in GLSL, such as payload.color.
+    facts.push([name === "value" ? String(before["variable"] ?? name) : name, old === now ? old : `${old} → ${now}`]);
   }
   return facts;
 }

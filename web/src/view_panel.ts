@@ -92,11 +92,10 @@ export class ViewPanel {
     this.scene.value = this.sceneNow === ofProgram ? "" : this.sceneNow;
   }
 
-  showOpened(opened: Opened, usesCamera: boolean): void {
+  showOpened(opened: Opened): void {
     this.frameRow.hidden = !opened.animated;
     this.frame.max = String(Math.max(1, Math.ceil(opened.lastFrame)));
     replace(this.camera, h("option", { value: "" }, "first"), opened.cameras.map((name) => h("option", { value: name }, name)));
-    this.cameraRow.hidden = !usesCamera;
   }
 
   showState(state: SessionState, usesCamera: boolean): void {
@@ -116,6 +115,7 @@ export class ViewPanel {
     };
     unlessActive(this.exposure, this.exposureText, state.exposure);
     unlessActive(this.frame, this.frameText, state.frame);
+    this.cameraRow.hidden = !usesCamera;
     this.fovRow.hidden = !usesCamera || state.camera === null;
     if (state.camera) unlessActive(this.fov, this.fovText, state.camera.fov);
   }

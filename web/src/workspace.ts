@@ -54,6 +54,7 @@ export interface SourceFile {
   status: FileStatus;
   message: string;
   modified: number; // time of the content on disk, 0 if unknown
+  merging: boolean; // the content on disk is being merged, perhaps by a question to the user
 }
 
 export interface WorkspaceHandlers {
@@ -104,7 +105,7 @@ export class Workspace {
     this.diagnostics = [];
     this.copyTo = program.title.replace(/^.*\//, "");
     this.files = program.files.map((file) => {
-      const source: SourceFile = { path: file.path, role: file.role, hash: file.hash, base: file.text, documents: [], status: "saved", message: "", modified: 0 };
+      const source: SourceFile = { path: file.path, role: file.role, hash: file.hash, base: file.text, documents: [], status: "saved", message: "", modified: 0, merging: false };
       source.documents = this.createDocuments(source, file.text);
       return source;
     });
@@ -157,9 +158,10 @@ export class Workspace {
     this.handlers.onStatus();
   }
 
-  // Writes all edits to disk now.
+  // Writes all edits to disk now, also those that could not be written before.
   save(): Promise<void> {
     clearTimeout(this.timer);
+    for (const file of this.files) if (file.status === "failed" || (file.status === "conflict" && !file.merging)) file.status = "changed";
     const generation = this.generation;
     this.saving = this.saving.then(async () => {
       if (generation !== this.generation) return;
@@ -295,7 +297,7 @@ export class Workspace {
         break;
       } catch (error) {
         const failure = error as ApiError;
-        if (failure.status === 0) {
+        if (failure.status !== 409) {
           this.fail(failure.message);
           return false;
         }
@@ -370,8 +372,18 @@ export class Workspace {
     }
   }
 
-  // Merges the content on disk into the editor.
   private async reload(file: SourceFile): Promise<void> {
+    if (file.merging) return;
+    file.merging = true;
+    try {
+      await this.mergeDisk(file);
+    } finally {
+      file.merging = false;
+    }
+  }
+
+  // Merges the content on disk into the editor.
+  private async mergeDisk(file: SourceFile): Promise<void> {
     let disk;
     try {
       disk = await api.file(file.path);

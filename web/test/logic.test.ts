@@ -94,8 +94,8 @@ test("the tree of an explanation numbers rays and shows what a payload becomes",
       {
         type: "ray", stage: "a", file: "a.rt.glsl", line: 30, result: "hit", origin: [0, 1, 9],
         events: [
-          { type: "payload", when: "before", variable: "payload", color: [0, 0, 0], level: 1 },
-          { type: "payload", when: "after", variable: "payload", color: [1, 0.5, 0], level: 1 },
+          { type: "payload", when: "before", variable: "payload", "payload.color": [0, 0, 0], "payload.level": 1 },
+          { type: "payload", when: "after", variable: "payload", "payload.color": [1, 0.5, 0], "payload.level": 1 },
           { type: "closest-hit", stage: "a.rchit", instanceName: "sphere", t: 7.98123456, events: [{ type: "ray", file: "a.rt.glsl", line: 52, result: "miss", events: [{ type: "miss", stage: "a.rmiss" }] }] },
         ],
       },

@@ -113,6 +113,7 @@ void writeCorpora(const fs::path& root, const fs::path& out) {
   addFilmSeeds(corpora);
   addSpirvSeeds(corpora, root);
   addTextSeeds(corpora, root);
+  addLabSeeds(corpora);
   for (const auto& [target, seeds] : corpora) {
     std::size_t bytes = 0;
     fs::remove_all(out / target);
@@ -129,6 +130,8 @@ void writeCorpora(const fs::path& root, const fs::path& out) {
   writeDictionary(out / "scene.dict", literals(root, Folders{"src/scene/toml"}), false);
   writeDictionary(out / "program.dict", literals(root, Folders{"src/program/description"}), false);
   writeDictionary(out / "lecture.dict", literals(root, Folders{"src/program/gsn"}), false);
+  writeDictionary(out / "lab_message.dict",
+                  literals(root, std::array<std::string_view, 2>{"src/job/interactive", "src/lab"}), true);
   writeDictionary(out / "film.dict", literals(root, std::array<std::string_view, 1>{"src/render/film"}), true);
 }
 

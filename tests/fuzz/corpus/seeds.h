@@ -22,6 +22,7 @@ using Corpora = std::map<std::string, std::vector<Seed>>;
 void addImageSeeds(Corpora&);  // png, jpeg, webp, hdr, exr, ktx2
 void addGltfSeeds(Corpora&);   // gltf, glb
 void addFilmSeeds(Corpora&);   // film
+void addLabSeeds(Corpora&);    // lab_message, lab_zip
 // spirv, modules: stages of the programs in `root`/tests/check/idioms that include no library. Throws Error if there is none.
 void addSpirvSeeds(Corpora&, const std::filesystem::path& root);
 

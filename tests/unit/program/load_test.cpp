@@ -75,6 +75,21 @@ TEST(LoadProgram, AcceptsShortNamesOfBuiltInPrograms) {
   }
 }
 
+TEST(LoadProgram, FindsABuiltInProgramInBracketsBesideAFolderOfItsName) {
+  const test::TempFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::create_directories(folder.path() / "lessons/05_shadow");
+  std::filesystem::current_path(folder.path());
+  EXPECT_THROW(loadProgram("lessons/05_shadow"), FileError);  // the folder is empty
+  const Program program = loadProgram("<programs/lessons/05_shadow>");
+  std::filesystem::current_path(before);
+  EXPECT_EQ(program.name, "lessons/05_shadow");
+  EXPECT_EQ(program.origin, "<programs/lessons/05_shadow>");
+  EXPECT_EQ(loadProgram("<programs/ao>").name, "ao");
+  EXPECT_THROW(loadProgram("<programs/shadow>"), UsageError);
+  EXPECT_THROW(loadProgram("<programs/>"), UsageError);
+}
+
 TEST(LoadProgram, SuggestsTheNearestBuiltInProgram) {
   try {
     loadProgram("pathtrace");
