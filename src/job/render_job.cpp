@@ -31,7 +31,9 @@ namespace {
 
 // Host memory of a finished image per pixel: floats and display bytes.
 constexpr std::uint64_t kImageBytes = 20;
-constexpr double kRateSeconds = 1.0;     // reading the ray counter waits for the device: at most this often
+// Reading the ray counter waits for the devices: at most this often, and for at most a two-hundredth of the time.
+constexpr double kRateSeconds = 1.0;
+constexpr double kRateShare = 200.0;
 constexpr double kPreviewSeconds = 1.0;  // between previews of frames
 // The error estimate for the progress takes at most a fiftieth of the time.
 constexpr double kEstimateSeconds = 2.0;
@@ -726,7 +728,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
   Progress progress;
   progress.sampleLimit = schedule.sampleLimit();
   progress.secondLimit = limits.seconds;
-  double rateTaken = 0, estimated = 0, estimateSeconds = 0;
+  double rateTaken = 0, rateCost = 0, estimated = 0, estimateSeconds = 0;
   bool abandoned = false, interrupted = false, outOfTime = false, previewed = !wasEmpty;
   while (schedule.next(roundSeconds(limits, elapsed()))) {
     const double begin = elapsed();
@@ -763,9 +765,10 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
       interrupted = schedule.next(0.0);  // otherwise everything is rendered
       break;
     }
-    if (now - rateTaken > kRateSeconds) {
+    if (now - rateTaken > std::max(kRateSeconds, kRateShare * rateCost)) {
       progress.raysPerSecond = static_cast<double>(team_->rays().rays) / now;
       rateTaken = now;
+      rateCost = elapsed() - now;
     }
     if (observer.showsError() && !limits.error &&
         now - estimated > kEstimateSeconds + kEstimateShare * estimateSeconds) {
