@@ -260,7 +260,7 @@ TEST_F(FramesOnDevices, FailIfAllAreLost) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "two4.exr"));
 }
 
-// Ctrl-C writes the unfinished frame; of the later ones, which other devices have begun, nothing is written.
+// Ctrl-C writes the unfinished frame; of the later ones, which other devices have started, nothing is written.
 TEST_F(FramesOnDevices, StopInOrder) {
   std::vector<std::string> arguments = animation("0,0", "two#.exr", {"--spp", "100000"});
   std::erase(arguments, "-q");
