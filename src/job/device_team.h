@@ -58,8 +58,9 @@ class DeviceTeam {
   std::uint64_t batchesWithin(double seconds) const;
 
   // Render the next batches of all pixels with this number of samples (one device: at most kBatchSamples); or batches of cells as
-  // Renderer::renderCells() does, with several devices as many as take about `seconds`. Return false if `progress` canceled them: one device then has the
-  // samples before them, several devices have lost all samples. Throw DeviceLostError if no device is left.
+  // Renderer::renderCells() does, with several devices as many as take about `seconds`. Return false if `progress` canceled
+  // them: one device then has the samples before them, several devices have lost all samples. Throw DeviceLostError if no
+  // device is left.
   bool renderSamples(std::uint64_t count, const render::BatchProgress& progress);
   bool renderCells(const std::vector<std::uint32_t>& limits, double seconds, const render::BatchProgress& progress);
 

@@ -136,7 +136,7 @@ bool sameArrays(const FilmState& a, const FilmState& b);
 // Throws UsageError if both have the same samples, or if either is adaptive. Asserts sameArrays().
 void mergeFilm(FilmState& film, const FilmState& part);
 
-// Adds what other devices have rendered of the same samples (Renderer::takePart): sums, coverage and statistics, and the center
+// Adds what other devices have rendered of the same samples (Renderer::takeFilm): sums, coverage and statistics, and the center
 // values of pixels that only `part` has. The counts of `film` stay. Asserts sameArrays().
 void addFilm(FilmState& film, const FilmState& part);
 
