@@ -125,13 +125,14 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     const std::scoped_lock lock(mutex_);
     for (std::uint32_t s = 0; s < info.stageCount; ++s) {
       const VkPipelineShaderStageCreateInfo& stage = info.pStages[s];
-      StageCopy added{nullptr, {}, stage.stage, stage.pName ? stage.pName : "main", valuesOf(stage.pSpecializationInfo)};
+      StageCopy added{
+          nullptr, {}, stage.stage, stage.pName ? stage.pName : "main", valuesOf(stage.pSpecializationInfo)};
       if (const auto found = modules_.find(stage.module); found != modules_.end()) {
         added.words = found->second;
         const auto name = names_.find({VK_OBJECT_TYPE_SHADER_MODULE, numberOf(stage.module)});
         if (name != names_.end()) added.name = name->second;
-      } else if (const auto* module = findInChain<VkShaderModuleCreateInfo>(
-                     stage.pNext, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
+      } else if (const auto* module =
+                     findInChain<VkShaderModuleCreateInfo>(stage.pNext, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
         added.words = wordsOf(*module);
       }
       copy.stages.push_back(std::move(added));
@@ -142,7 +143,10 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
       if (group.type == VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR)
         copy.groups.push_back({group.type, index(group.generalShader), {}, {}, {}});
       else
-        copy.groups.push_back({group.type, {}, index(group.closestHitShader), index(group.anyHitShader),
+        copy.groups.push_back({group.type,
+                               {},
+                               index(group.closestHitShader),
+                               index(group.anyHitShader),
                                index(group.intersectionShader)});
     }
     // The groups of libraries follow, in the order of the libraries.

@@ -28,7 +28,7 @@ using Words = std::shared_ptr<const std::vector<std::uint32_t>>;
 
 // A stage as the application passed it.
 struct StageCopy {
-  Words words;  // null if unknown: created from a module identifier
+  Words words;       // null if unknown: created from a module identifier
   std::string name;  // of VK_EXT_debug_utils; can be empty
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_ALL;
   std::string entryPoint;

@@ -451,8 +451,10 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice handle, cons
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance handle, const char* name) {
   static const std::array kAlways{
-      Entry{"vkCreateInstance", asVoid(createInstance)},       Entry{"vkDestroyInstance", asVoid(destroyInstance)},
-      Entry{"vkCreateDevice", asVoid(createDevice)},           Entry{"vkGetInstanceProcAddr", asVoid(getInstanceProcAddr)},
+      Entry{"vkCreateInstance", asVoid(createInstance)},
+      Entry{"vkDestroyInstance", asVoid(destroyInstance)},
+      Entry{"vkCreateDevice", asVoid(createDevice)},
+      Entry{"vkGetInstanceProcAddr", asVoid(getInstanceProcAddr)},
       Entry{"vkGetDeviceProcAddr", asVoid(getDeviceProcAddr)},
   };
   static const std::array kMessengers{

@@ -31,8 +31,7 @@ void set(Settings& settings, std::string_view source, std::string_view key, std:
     else if (value == "0" || value == "false")
       target = false;
     else
-      settings.problems.push_back(
-          fmt::format("{}: {} is '{}', but must be 0 or 1", source, key, printable(value)));
+      settings.problems.push_back(fmt::format("{}: {} is '{}', but must be 0 or 1", source, key, printable(value)));
   };
   if (key == "sbt")
     flag(settings.sbt);

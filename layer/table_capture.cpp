@@ -18,7 +18,8 @@ constexpr std::string_view kUnreachable = "Q801";
 
 check::TableKind kindOf(const PipelineCopy& copy, const GroupCopy& group) {
   if (group.type != VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR) return check::TableKind::hit;
-  const VkShaderStageFlagBits stage = group.general ? copy.stages[*group.general].stage : VK_SHADER_STAGE_CALLABLE_BIT_KHR;
+  const VkShaderStageFlagBits stage =
+      group.general ? copy.stages[*group.general].stage : VK_SHADER_STAGE_CALLABLE_BIT_KHR;
   if (stage == VK_SHADER_STAGE_RAYGEN_BIT_KHR) return check::TableKind::rayGeneration;
   return stage == VK_SHADER_STAGE_MISS_BIT_KHR ? check::TableKind::miss : check::TableKind::callable;
 }
@@ -93,8 +94,7 @@ bool TableCapture::record(Copy& copy, const std::vector<Part>& parts) {
   constexpr VkMemoryPropertyFlags kFlags = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   bool found = false;
   for (std::uint32_t i = 0; i < device_.memory.memoryTypeCount && !found; ++i) {
-    found = (needs.memoryTypeBits >> i & 1u) != 0 &&
-            (device_.memory.memoryTypes[i].propertyFlags & kFlags) == kFlags;
+    found = (needs.memoryTypeBits >> i & 1u) != 0 && (device_.memory.memoryTypes[i].propertyFlags & kFlags) == kFlags;
     allocate.memoryTypeIndex = i;
   }
   void* mapped = nullptr;
@@ -106,7 +106,8 @@ bool TableCapture::record(Copy& copy, const std::vector<Part>& parts) {
   }
   copy.mapped = static_cast<std::byte*>(mapped);
   std::memset(copy.mapped, 0, static_cast<std::size_t>(info.size));
-  const auto barrier = [&](VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to, VkAccessFlags read) {
+  const auto barrier = [&](VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,
+                           VkAccessFlags read) {
     VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, written, read};
     vk.CmdPipelineBarrier(copy.commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
   };
@@ -283,9 +284,9 @@ const std::vector<check::TableGroup>& TableCapture::groupsOf(LinkedPipeline& pip
   std::vector<std::byte> handles(bytes * copy.groups.size());
   std::vector<check::TableGroup> groups;
   const bool known = device_.table.GetRayTracingShaderGroupHandlesKHR &&
-                     device_.table.GetRayTracingShaderGroupHandlesKHR(
-                         device_.handle, pipeline.handle, 0, static_cast<std::uint32_t>(copy.groups.size()),
-                         handles.size(), handles.data()) == VK_SUCCESS;
+                     device_.table.GetRayTracingShaderGroupHandlesKHR(device_.handle, pipeline.handle, 0,
+                                                                      static_cast<std::uint32_t>(copy.groups.size()),
+                                                                      handles.size(), handles.data()) == VK_SUCCESS;
   for (std::size_t g = 0; known && g < copy.groups.size(); ++g) {
     const GroupCopy& group = copy.groups[g];
     check::TableGroup added;
@@ -308,9 +309,9 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   std::string key = fmt::format("{:#x}", numberOf(pipeline.handle));
   // The position of a group in PipelineGroups: the lists have the groups of one kind in their order.
   const auto position = [&](std::size_t group) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        table.begin(), table.begin() + static_cast<std::ptrdiff_t>(group),
-        [&](const check::TableGroup& other) { return other.kind == table[group].kind; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(group),
+                              [&](const check::TableGroup& other) { return other.kind == table[group].kind; }));
   };
   const auto select = [&](check::TableKind kind, auto& list) {
     const auto all = list;
@@ -339,8 +340,9 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   std::vector<Diagnostic> added = check::checkModules(groups, pipeline.modules, device_.limits).diagnostics;
   // A table need not reach all stages: a pipeline can be for more than one scene.
   std::erase_if(added, [&](const Diagnostic& d) {
-    return d.id == kUnreachable || std::ranges::any_of(
-        known, [&](const Diagnostic& k) { return k.id == d.id && k.file == d.file && k.line == d.line; });
+    return d.id == kUnreachable || std::ranges::any_of(known, [&](const Diagnostic& k) {
+             return k.id == d.id && k.file == d.file && k.line == d.line;
+           });
   });
   check::Suppressions(pipeline.sources).apply(added);
   device_.report(std::move(added), pipeline);

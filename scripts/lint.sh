@@ -48,7 +48,7 @@ version14() {
 checkCpp() {
   local tool sources
   tool=$(version14 clang-format)
-  mapfile -d '' sources < <(find apps examples include src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
+  mapfile -d '' sources < <(find apps examples include layer src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
   if [ -z "$tool" ]; then
     missing "C++ format" clang-format-14
   elif [ "${1-}" = --fix ]; then
@@ -73,7 +73,7 @@ checkScripts() {
 checkTidy() {
   local tool files=("$@")
   tool=$(version14 clang-tidy)
-  ((${#files[@]})) || mapfile -t files < <(find apps examples src -name '*.cpp' | sort)
+  ((${#files[@]})) || mapfile -t files < <(find apps examples layer src -name '*.cpp' | sort)
   if [ -z "$tool" ]; then
     missing clang-tidy clang-tidy-14
   elif [ ! -e build/release/compile_commands.json ]; then

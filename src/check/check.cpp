@@ -78,6 +78,7 @@ void runProgramRules(const ProgramInput& input, const PipelineSpaces& spaces, Re
   checkSharedLocations(input, report);
   checkRecordLayout(input, report);
   checkStrides(input, report);
+  checkTriangleKinds(input, report);
   checkGeometry(input, report);
   checkResources(input, report);
   checkRandomSeeds(input, report);

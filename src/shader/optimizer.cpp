@@ -35,7 +35,9 @@ void registerSpecialization(spvtools::Optimizer& optimizer, const Specialization
       .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
 }
 
-std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo,
+// `untrusted`: validates after each pass. Some passes of SPIRV-Tools 2023.1 make valid modules invalid, with which later passes
+// crash (VectorDCE).
+std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo, bool untrusted,
                                const std::optional<SpecializationValues>& values) {
   std::vector<std::uint32_t> result;
   std::string message;
@@ -45,6 +47,7 @@ std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool deb
     optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
       if (level <= SPV_MSG_ERROR) message = text;
     });
+    optimizer.SetValidateAfterAll(untrusted);
     if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     if (values) registerSpecialization(optimizer, *values);
     registerReductions(optimizer);
@@ -63,12 +66,12 @@ std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool deb
 }  // namespace
 
 std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
-  return run(words, debugInfo, {});
+  return run(words, debugInfo, false, {});
 }
 
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
                                                const std::optional<SpecializationValues>& values) {
-  return run(words, true, values);
+  return run(words, true, true, values);
 }
 
 }  // namespace quintet::shader

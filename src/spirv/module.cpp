@@ -685,6 +685,8 @@ SourceLocation Module::location(const Instruction& instruction, std::string_view
 SourceLocation Module::declaration(Id id) const {
   if (const auto found = declarations_.find(id); found != declarations_.end() && found->second.line > 0)
     return found->second;
+  if (const Instruction* declared = definition(id); declared && strings_.contains(declared->file) && declared->line > 0)
+    return location(*declared);
   return idLocation(id);
 }
 

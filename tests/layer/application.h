@@ -28,6 +28,7 @@ struct Application {
   std::map<std::uint32_t, std::uint32_t> constants;  // of ray generation
   Modules modules = Modules::handles;
   bool debugInfo = true;
+  std::uint32_t pipelines = 1;  // created by as many threads at the same time; one is used
 
   bool boxes = false;                  // geometry: boxes instead of triangles
   std::uint32_t recordOffset = 0;      // of the instance

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <utility>
 
 #include "application.h"
@@ -421,6 +424,66 @@ OpFunctionEnd
   EXPECT_EQ(result.error, "");
   EXPECT_THAT(idsOf(result), ElementsAre("Q101"));
   EXPECT_THAT(textsOf(result), AllOf(HasSubstr("SPIR-V id %"), HasSubstr("OpTraceRayKHR number 1")));
+}
+
+// Settings of the layer for one test. A folder for its files.
+class LayerSettings : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "quintet-layer-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    if (const char* value = std::getenv("QUINTET_LINK_CHECK")) before_ = value;
+  }
+  void TearDown() override {
+    ::setenv("QUINTET_LINK_CHECK", before_.c_str(), 1);
+    std::filesystem::remove_all(folder_);
+  }
+  static void set(const std::string& settings) { ::setenv("QUINTET_LINK_CHECK", settings.c_str(), 1); }
+  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+  std::string textOf(const std::string& name) const {
+    std::ifstream stream(file(name));
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string before_;
+};
+
+Application withMistake() {
+  Application app = withLayer();
+  replace(app.shaders.at("a.rmiss"), "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;");
+  return app;
+}
+
+// Each pipeline has the mistake, which is reported once.
+TEST_F(LayerSettings, CountsRepeatedMistakesOfThreads) {
+  set("output=" + file("link.txt").string());
+  Application app = withMistake();
+  app.pipelines = 8;
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(idsOf(result), ElementsAre("Q104"));
+  EXPECT_THAT(textOf("link.txt"), AllOf(HasSubstr("a.rgen:10:3: warning:"), HasSubstr("payload.color"),
+                                        HasSubstr("a.rgen:10: Q104 occurred 8 times")));
+}
+
+TEST_F(LayerSettings, WritesSarif) {
+  set("output=" + file("link.sarif").string());
+  EXPECT_THAT(idsOf(runApplication(withMistake())), ElementsAre("Q104"));
+  EXPECT_THAT(textOf("link.sarif"), AllOf(HasSubstr("\"version\":\"2.1.0\""), HasSubstr("\"ruleId\":\"Q104\""),
+                                          HasSubstr("\"uri\":\"a.rgen\""), HasSubstr("\"startLine\":10"),
+                                          HasSubstr("\"executionSuccessful\":true")));
+}
+
+TEST_F(LayerSettings, AppliesTheSuppressionFile) {
+  std::ofstream(file("accepted.txt")) << "Q104 a.rgen:10  # on purpose\n";
+  set("suppressions=" + file("accepted.txt").string() + ",output=" + file("link.sarif").string());
+  EXPECT_THAT(runApplication(withMistake()).messages, IsEmpty());
+  EXPECT_THAT(textOf("link.sarif"), HasSubstr("on purpose"));
+  std::ofstream(file("accepted.txt")) << "Q104 a.rgen:11\n";
+  EXPECT_THAT(idsOf(runApplication(withMistake())), ElementsAre("Q104"));
 }
 
 // Above and below the validation layers: neither layer disturbs the other.

@@ -78,12 +78,14 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
     if (const spirv::SharedVariable* variable = graph.stages[stage].facts->incoming(storage))
       link(from, {stage, variable->id});
   };
+  // In raw modules it can be unknown whether a trace reaches a stage.
+  const auto isKnown = [&](const Edge& edge) { return edge.exact || graph.usesLibrary; };
   for (const TraceSite& site : graph.traces)
     for (const Edge& edge : site.edges)
-      linkIncoming({site.stage, site.trace->payload}, edge.stage, Storage::IncomingRayPayloadKHR);
+      if (isKnown(edge)) linkIncoming({site.stage, site.trace->payload}, edge.stage, Storage::IncomingRayPayloadKHR);
   for (const CallSite& site : graph.calls)
     for (const Edge& edge : site.edges)
-      linkIncoming({site.stage, site.call->data}, edge.stage, Storage::IncomingCallableDataKHR);
+      if (isKnown(edge)) linkIncoming({site.stage, site.call->data}, edge.stage, Storage::IncomingCallableDataKHR);
   for (std::size_t group = 0; group < graph.groups.hitGroups.size(); ++group) {
     for (std::size_t ray = 0; ray < graph.rayCount(); ++ray) {
       const program::HitShaders& shaders = graph.shaders({group, ray});

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/error.h"
+#include "spirv/plain_lines.h"
 
 namespace quintet::check {
 namespace {
@@ -56,7 +57,7 @@ ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t
                         const std::optional<shader::SpecializationValues>& values) {
   ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}};
   try {
-    stage.spirv = shader::optimizeSpecialized(spirv::withEntryPoint(words, entryPoint), values);
+    stage.spirv = shader::optimizeSpecialized(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)), values);
   } catch (const Error& error) {
     stage.problem = error.what();
   }

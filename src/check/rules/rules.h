@@ -53,7 +53,8 @@ void checkHitRecords(const CheckInput& input, Report& report);           // Q515
 void checkArrayIndices(const CheckInput& input, Report& report);         // Q711
 void checkEndlessRecursion(const CheckInput& input, Report& report);     // Q403
 void checkGeometry(const ProgramInput& input, Report& report);           // Q601 to Q604
-void checkHitKinds(const CheckInput& input, Report& report);             // Q607, Q608
+void checkHitKinds(const CheckInput& input, Report& report);             // Q608
+void checkTriangleKinds(const ProgramInput& input, Report& report);      // Q607
 void checkHitPositions(const CheckInput& input, Report& report);         // Q717
 void checkMissDistances(const CheckInput& input, Report& report);        // Q719
 void checkRandomSeeds(const ProgramInput& input, Report& report);        // Q718

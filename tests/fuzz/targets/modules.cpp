@@ -9,6 +9,7 @@
 #include "check/check.h"
 #include "check/modules/stage_groups.h"
 #include "check/modules/stage_module.h"
+#include "spirv/plain_lines.h"
 #include "spirv/shader_record.h"
 #include "target.h"
 
@@ -41,6 +42,7 @@ void readInput(Input input) {
   }
   checkAll(optimized);
   checkAll(raw);
+  (void)spirv::withPlainLines(words);
   if (const auto module = spirv::Module::read(words)) (void)spirv::shaderRecordBytes(*module);
 }
 

@@ -2,8 +2,11 @@
 // Raw SPIR-V modules: which rules run, locations with and without lines, records, and malformed modules.
 #include <gmock/gmock.h>
 
+#include <cstring>
+
 #include "check/modules/stage_groups.h"
 #include "modules_test_support.h"
+#include "spirv/plain_lines.h"
 #include "spirv/shader_record.h"
 
 namespace quintet::check {
@@ -38,6 +41,39 @@ TEST(ModuleCheck, ReportsPayloadTypesAtTheLineOfTheTrace) {
   replace(p.text("a.rmiss"), "vec4 color;", "vec3 color;");
   replace(p.text("a.rmiss"), "vec4(0.5)", "vec3(0.5)");
   EXPECT_THAT(p.check(), Contains("Q101 a.rgen:7"));
+}
+
+// A trace whose hits run no closest-hit shader has a payload of its own type. Which group it hits is unknown.
+TEST(ModuleCheck, AcceptsPayloadsThatOnlyOneOfSeveralTracesShares) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rgen") = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(set = 0, binding = 1, rgba8) uniform image2D result;
+layout(location = 0) rayPayloadEXT vec4 color;
+layout(location = 1) rayPayloadEXT float visible;
+void main() {
+  traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFF, 0, 2, 0, vec3(0), 0.001, vec3(0, 0, 1), 100.0, 0);
+  visible = 0.0;
+  traceRayEXT(tlas, gl_RayFlagsTerminateOnFirstHitEXT, 0xFF, 1, 2, 1, vec3(0), 0.001, vec3(0, 0, 1), 100.0, 1);
+  imageStore(result, ivec2(gl_LaunchIDEXT.xy), color * visible);
+}
+)";
+  p.stages.push_back({"s.rmiss",
+                      "layout(location = 1) rayPayloadInEXT float visible;\nvoid main() { visible = 1.0; }\n",
+                      Stage::miss});
+  p.groups.misses.push_back({{}, "s.rmiss", {}, 0});
+  program::HitGroup empty;
+  empty.shaders.try_emplace("");
+  p.groups.hitGroups.push_back(empty);
+  for (const bool known : {true, false}) {
+    p.groups.tablesKnown = known;
+    EXPECT_THAT(p.check(), IsEmpty()) << known;
+  }
+  replace(p.text("s.rmiss"), "float visible", "double visible");  // no trace sends it
+  replace(p.text("s.rmiss"), "visible = 1.0", "visible = 1.0LF");
+  for (const bool known : {true, false}) {
+    p.groups.tablesKnown = known;
+    EXPECT_THAT(p.check(), Contains("Q101 a.rgen:10")) << known;
+  }
 }
 
 TEST(ModuleCheck, NamesTheIdIfThereAreNoLines) {
@@ -197,6 +233,64 @@ TEST(ModuleCheck, ReportsWhatCannotBeAnalyzedAsAProblem) {
   std::vector<ModuleStage> modules = p.modules();
   modules[1] = stage;
   EXPECT_THAT(checkModules(p.groups, modules, {}).diagnostics, IsEmpty());
+}
+
+// NonSemantic.Shader.DebugInfo.100 in place of OpLine: the instructions that glslang -gVS and DXC write.
+TEST(ModuleCheck, ConvertsDebugInfoToLines) {
+  const auto op = [](spv::Op code, std::vector<std::uint32_t> operands) {
+    operands.insert(operands.begin(),
+                    static_cast<std::uint32_t>((operands.size() + 1) << 16) | static_cast<std::uint32_t>(code));
+    return operands;
+  };
+  std::vector<std::uint32_t> words{spv::MagicNumber, 0x00010600, 0, 40, 0};
+  const auto add = [&](spv::Op code, std::vector<std::uint32_t> operands) {
+    const auto encoded = op(code, std::move(operands));
+    words.insert(words.end(), encoded.begin(), encoded.end());
+  };
+  const auto text = [](const std::string& value) {
+    std::vector<std::uint32_t> literal(value.size() / 4 + 1);
+    std::memcpy(literal.data(), value.data(), value.size());
+    return literal;
+  };
+  const auto with = [](std::vector<std::uint32_t> head, const std::vector<std::uint32_t>& tail) {
+    head.insert(head.end(), tail.begin(), tail.end());
+    return head;
+  };
+  using spv::Op;
+  add(Op::OpExtInstImport, with({1}, text("NonSemantic.Shader.DebugInfo.100")));
+  add(Op::OpMemoryModel, {0, 1});
+  add(Op::OpEntryPoint, with({5317, 20}, text("main")));
+  add(Op::OpString, with({2}, text("a.hlsl")));
+  add(Op::OpString, with({3}, text("float4 color;")));
+  add(Op::OpTypeVoid, {4});
+  add(Op::OpTypeInt, {5, 32, 0});
+  add(Op::OpConstant, {5, 6, 17});
+  add(Op::OpTypeFloat, {7, 32});
+  add(Op::OpTypePointer, {8, 5342, 7});
+  add(Op::OpConstant, {7, 9, 0});
+  add(Op::OpVariable, {8, 10, 5342});
+  add(Op::OpExtInst, {4, 11, 1, 35, 2, 3});                         // DebugSource
+  add(Op::OpExtInst, {4, 12, 1, 18, 2, 4, 11, 6, 6, 4, 2, 10, 6});  // DebugGlobalVariable
+  add(Op::OpTypeFunction, {13, 4});
+  add(Op::OpFunction, {4, 20, 0, 13});
+  add(Op::OpLabel, {21});
+  add(Op::OpExtInst, {4, 22, 1, 103, 11, 6, 6, 6, 6});  // DebugLine
+  add(Op::OpStore, {10, 9});
+  add(Op::OpReturn, {});
+  add(Op::OpFunctionEnd, {});
+  const auto module = spirv::Module::read(spirv::withPlainLines(words));
+  ASSERT_TRUE(module);
+  EXPECT_EQ(module->source("a.hlsl"), "float4 color;");
+  EXPECT_EQ(module->declaration(10).line, 17);
+  for (const spirv::Instruction& i : module->instructions()) {
+    EXPECT_NE(i.op, Op::OpExtInst);
+    if (i.op != Op::OpStore) continue;
+    EXPECT_EQ(locationText(module->location(i).file, module->location(i).line, 0), "a.hlsl:17");
+  }
+  const auto direct = spirv::Module::read(words);  // the reader understands both
+  ASSERT_TRUE(direct);
+  EXPECT_EQ(direct->source("a.hlsl"), "float4 color;");
+  EXPECT_EQ(direct->declaration(10).line, 17);
 }
 
 TEST(ModuleCheck, RejectsFilesThatAreNoSpirv) {

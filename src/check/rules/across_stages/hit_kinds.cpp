@@ -80,9 +80,14 @@ void checkHitKinds(const CheckInput& input, Report& report) {
                                                         : "up to ",
                         hit.hitKind.known && hit.hitKind.min <= kMaxHitKind ? hit.hitKind.values.back() : *kind,
                         kMaxHitKind));
-    if (stage.kind != shader::Stage::intersection && onlyProcedural(graph, stage.file, input.scene))
-      checkTriangleKinds(graph, stage, report);
   }
+}
+
+void checkTriangleKinds(const ProgramInput& input, Report& report) {
+  for (const PipelineStage& stage : input.graph.stages)
+    if (stage.facts && stage.kind != shader::Stage::intersection &&
+        onlyProcedural(input.graph, stage.file, input.scene))
+      checkTriangleKinds(input.graph, stage, report);
 }
 
 }  // namespace quintet::check

@@ -45,9 +45,10 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
 
 // With dynamic arguments, a trace or call is assumed to reach more shaders than it does. A difference is then an error
 // only if one side differs in all of its pairs.
-bool isTypeError(const std::vector<Pair>& pairs, const Pair& pair) {
+bool isTypeError(const PipelineGraph& graph, const std::vector<Pair>& pairs, const Pair& pair) {
   if (!pair.difference) return false;
   if (pair.edge->exact) return true;
+  if (!graph.error.empty()) return false;  // the other side can be a stage that cannot be analyzed
   const auto agrees = [&](auto related) {
     return std::ranges::any_of(pairs, [&](const Pair& p) { return !p.difference && related(p); });
   };
@@ -55,6 +56,12 @@ bool isTypeError(const std::vector<Pair>& pairs, const Pair& pair) {
   const bool senderAgrees = agrees([&](const Pair& p) {
     return p.site == pair.site && (p.edge->role == Role::miss) == (pair.edge->role == Role::miss);
   });
+  // A pipeline can have groups that its table does not have, and a table can have records without a shader.
+  const PipelineGroups& groups = graph.groups;
+  if (groups.groupsKnown && !groups.tablesKnown) return !receiverAgrees && !senderAgrees;
+  // A hit can end without a closest-hit shader.
+  const bool isHit = pair.edge->role != Role::miss && pair.edge->role != Role::callable;
+  if (isHit && groups.hitRecords == HitRecords::byRecord) return !receiverAgrees;
   return !receiverAgrees || !senderAgrees;
 }
 
@@ -96,7 +103,7 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
     const spirv::StageFacts& sender = graph.facts(site);
     const spirv::StageFacts& receiver = graph.facts(*pair.edge);
     const SourceLocation location = graph.location(site);
-    if (isTypeError(pairs, pair)) {
+    if (isTypeError(graph, pairs, pair)) {
       report.add(wording.typeId, location,
                  fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
                              sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),

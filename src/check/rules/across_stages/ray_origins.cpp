@@ -221,7 +221,9 @@ void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, Report& 
     for (const TraceSite& site : graph.traces) {
       if (site.stage != stage || site.trace->payload != origin.payload) continue;
       for (const Edge& edge : site.edges) {
-        if (edge.role != Role::closestHit || !storesHitPosition(graph.facts(edge).module(), origin.member)) continue;
+        const bool known = edge.exact || graph.usesLibrary;
+        if (edge.role != Role::closestHit || !known || !storesHitPosition(graph.facts(edge).module(), origin.member))
+          continue;
         const SourceLocation location = module.location(module.instructions()[origin.trace], "traceRayEXT");
         report.add("Q705", graph.location(graph.stages[stage], location),
                    fmt::format("the ray starts with {} at the hit position that the {} stores in the payload; "

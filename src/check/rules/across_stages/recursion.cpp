@@ -200,11 +200,12 @@ class CallChains {
       if (site.stage != stage) continue;
       const SourceLocation location = graph_.location(site);
       for (const Edge& edge : site.edges) {
+        if (!graph_.usesLibrary && !edge.exact) continue;  // which shader runs is unknown
         const int below = visit(edge.stage);
         if (below == kOpen)
           report_.add("Q401", location,
                       fmt::format("this call closes a cycle: the {} can call itself", graph_.describe(edge)));
-        if (below == kMaxDepth)
+        if (below == kMaxDepth && graph_.usesLibrary)  // other applications can set the size of the stack
           report_.add("Q402", location,
                       fmt::format("calls are nested {} deep from here, through the {}; the stack allows {}", below + 1,
                                   graph_.describe(edge), kMaxDepth));
