@@ -202,6 +202,7 @@ test("a solution is shown and can be undone; a reset restores the lesson", async
   await waitForSaved(page);
   await task.getByRole("button", { name: "Reset" }).click();
   await page.getByRole("dialog").getByRole("button", { name: "Reset" }).click();
+  await page.getByRole("tab", { name: "Ray generation", selected: true }).waitFor();  // the lesson was opened again
   await showTab(page, "Closest hit");
   await page.locator(".cm-line", { hasText: "payload.reflectance = reflectance;" }).waitFor();
 });
