@@ -269,6 +269,26 @@ TEST_F(LabSession, RestartsAKilledWorker) {
   EXPECT_EQ(server.workers().size(), 1u);
 }
 
+TEST_F(LabSession, WaitsForASaveAfterTwoCrashesInSequence) {
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage(isLossless);
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {1, 1, 0}}, {"id", 2}});
+  done(page, 2);
+  ASSERT_EQ(server.workers().size(), 1u);
+  ::kill(server.workers().front(), SIGSEGV);
+  EXPECT_THAT(page.waitForWorker("crashed").at("message").get<std::string>(), HasSubstr("signal 11"));
+  page.waitForWorker("started");
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));  // the default
+  ASSERT_EQ(server.workers().size(), 1u);
+  ::kill(server.workers().front(), SIGSEGV);
+  page.waitForWorker("crashed");
+  EXPECT_EQ(page.waitForWorker("waiting").at("restarts"), 2);
+  save(replaced(kPlain, "\"0.0, 1.0, 0.0\"", "\"0.0, 0.0, 1.0\""));
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 0, 255));
+}
+
 TEST_F(LabSession, EndsAnIdleWorkerAndStartsItAgain) {
   const LabProcess server = start({"--idle", "2"});
   PageClient page(server);

@@ -96,6 +96,11 @@ export async function waitForImage(page) {
   await page.waitForFunction(() => /(Frame \d+|\d+ of \d+ samples)/.test(document.querySelector(".image-facts")?.textContent ?? "") && document.querySelector(".image-overlay").hidden && Number(document.querySelector("canvas.image").dataset.shown) > 0);
 }
 
+// Waits until all samples are shown, so that only a command changes the image.
+export async function waitForComplete(page) {
+  await page.waitForFunction(() => /^(\d+) of \1 samples/.test(document.querySelector(".image-facts")?.textContent ?? ""));
+}
+
 // Waits until the image differs from `before`, and returns it.
 export async function waitForChange(page, before) {
   await page.waitForFunction((old) => document.querySelector("canvas.image").toDataURL() !== old, before);

@@ -4,8 +4,9 @@ import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { after, afterEach, before, beforeEach, test } from "node:test";
-import { colorAt, imageOf, kPatience, openPage, replaceInEditor, Server, showTab, startBrowser, waitForChange, waitForImage, waitForSaved } from "./harness.mjs";
+import { colorAt, imageOf, kPatience, openPage, replaceInEditor, Server, showTab, startBrowser, waitForChange, waitForComplete, waitForImage, waitForSaved } from "./harness.mjs";
 
+// The tests share a server and its folder: each edits a lesson of its own.
 let browser;
 let server;
 let context;
@@ -45,7 +46,7 @@ test("a lesson opens with text, editors, image and parameters", async () => {
 });
 
 test("an edit is saved and shown; an error is underlined and explained; the fix shows the image again", async () => {
-  await open("#lesson=04_diffuse");
+  await open("#lesson=07_mirror_recursion");
   await waitForImage(page);
   await showTab(page, "Miss");
   await replaceInEditor(page, "payload.color = background;", "payload.color = vec3(0.0, 1.0, 0.0);");
@@ -54,7 +55,7 @@ test("an edit is saved and shown; an error is underlined and explained; the fix 
     return canvas.getContext("2d").getImageData(2, 2, 1, 1).data[1] > 250;
   });
   await waitForSaved(page);
-  const file = path.join(server.folder, "lessons/04_diffuse/diffuse.rt.glsl");
+  const file = path.join(server.folder, "lessons/07_mirror_recursion/mirror_recursion.rt.glsl");
   assert.match(readFileSync(file, "utf8"), /vec3\(0\.0, 1\.0, 0\.0\)/);
 
   await replaceInEditor(page, "vec3(0.0, 1.0, 0.0)", "vec3(green)");
@@ -88,7 +89,7 @@ test("a problem of the linked pipeline has an explanation page and stands out in
 
 test("dragging turns the camera, with several images per second", async () => {
   await open(`#program=${encodeURIComponent("<programs/normals>")}`);
-  await waitForImage(page);
+  await waitForComplete(page);
   const before = await imageOf(page);
   const count = () => page.evaluate(() => Number(document.querySelector("canvas.image").dataset.shown));
   const images = await count();
@@ -110,13 +111,14 @@ test("dragging turns the camera, with several images per second", async () => {
 
 test("the keyboard turns the camera and zooms", async () => {
   await open(`#program=${encodeURIComponent("<programs/normals>")}`);
-  await waitForImage(page);
+  await waitForComplete(page);
   let shown = await imageOf(page);
   await page.locator(".image-stage").focus();
   for (const key of ["ArrowLeft", "+"]) {
     await page.keyboard.press(key);
     shown = await waitForChange(page, shown);
-    await waitForImage(page);
+    await waitForComplete(page);
+    shown = await imageOf(page);
   }
 });
 
@@ -200,6 +202,7 @@ test("a solution is shown and can be undone; a reset restores the lesson", async
   await waitForSaved(page);
   await task.getByRole("button", { name: "Reset" }).click();
   await page.getByRole("dialog").getByRole("button", { name: "Reset" }).click();
+  await page.getByRole("tab", { name: "Ray generation", selected: true }).waitFor();  // the lesson was opened again
   await showTab(page, "Closest hit");
   await page.locator(".cm-line", { hasText: "payload.reflectance = reflectance;" }).waitFor();
 });
@@ -276,13 +279,13 @@ test("a broken scene is refused with a message, and the image stays", async () =
 
 test("an uploaded scene is shown", async () => {
   await open(`#program=${encodeURIComponent("<programs/normals>")}`);
-  await waitForImage(page);
+  await waitForComplete(page);
   const before = await imageOf(page);
   await showTab(page, "View");
   const scene = readFileSync(path.join(process.env.REPOSITORY, "examples/scenes/spheres.scene.toml"));
   await page.locator("input[aria-label='Scene files']").setInputFiles({ name: "spheres.scene.toml", mimeType: "text/plain", buffer: scene });
   await waitForChange(page, before);
-  assert.equal(await page.locator("#view-scene").inputValue(), "uploads/spheres.scene.toml");
+  await page.waitForFunction(() => document.querySelector("#view-scene").value === "uploads/spheres.scene.toml");
 });
 
 test("completion, hover help and undo in the editor", async () => {
