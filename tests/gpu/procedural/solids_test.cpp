@@ -70,6 +70,71 @@ void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected,
 
 class Solids : public testing::TestWithParam<PrimitiveType> {};
 
+// Texture coordinates of a point of a canonical solid, and the directions of increasing u and of decreasing v (point.glsl).
+struct Chart {
+  glm::dvec2 uv{0};
+  dvec3 along{0}, up{0};
+};
+
+Chart chartAt(PrimitiveType type, std::uint32_t face, const dvec3& p) {
+  const double rho = std::hypot(p.x, p.z), turn = 0.5 + std::atan2(p.x, p.z) / glm::two_pi<double>();
+  const dvec3 out = dvec3(p.x, 0, p.z) / rho, around(out.z, 0, -out.x);
+  if (type == PrimitiveType::sphere)
+    return {{turn, std::acos(p.y) / glm::pi<double>()}, around, dvec3(0, 1, 0) - p.y * p};
+  if (type == PrimitiveType::torus) {
+    const double angle = std::atan2(p.y, rho - 1);
+    return {{turn, 0.5 - angle / glm::two_pi<double>()}, around, dvec3(0, std::cos(angle), 0) - std::sin(angle) * out};
+  }
+  const auto square = [](double right, double above) { return glm::dvec2(0.5 + 0.5 * right, 0.5 - 0.5 * above); };
+  switch (face) {
+    case 0: return {square(p.z, p.y), {0, 0, 1}, {0, 1, 0}};
+    case 1: return {square(-p.z, p.y), {0, 0, -1}, {0, 1, 0}};
+    case 2: return {square(p.x, p.z), {1, 0, 0}, {0, 0, 1}};
+    case 3: return {square(p.x, -p.z), {1, 0, 0}, {0, 0, -1}};
+    case 4: return {square(-p.x, p.y), {-1, 0, 0}, {0, 1, 0}};
+    case 5: return {square(p.x, p.y), {1, 0, 0}, {0, 1, 0}};
+    default: break;
+  }
+  const dvec3 up = type == PrimitiveType::cone ? dvec3(0, 1, 0) - 0.5 * out : dvec3(0, 1, 0);
+  return {{turn, 0.5 - 0.5 * p.y}, around, up};
+}
+
+TEST_P(Solids, HaveTextureCoordinatesAndTangents) {
+  Random random(700 + static_cast<std::uint32_t>(GetParam()));
+  int compared = 0;
+  for (int round = 0; round < 3; ++round) {
+    Primitive primitive = randomPrimitive(random, GetParam(), 1.5f);
+    primitive.parameter = 0.3f;
+    const mat4 worldFromObject = random.affine(1.5f, 2.0f);
+    const dmat4 world = dmat4(worldFromObject) * dmat4(primitive.objectFromPrimitive), inverse = glm::inverse(world);
+    std::vector<ProbeRay> rays;
+    for (int i = 0; i < 200; ++i) {
+      const vec3 from = 3.0f * random.onSphere(), to = random.inBox(0.9f);
+      rays.push_back({.origin = vec3(world * glm::dvec4(dvec3(from), 1)),
+                      .direction = vec3(world * glm::dvec4(dvec3(to - from), 0))});
+    }
+    const std::vector<ProbeHit> hits = probe(sceneOf(solidsOf({primitive}), worldFromObject), rays);
+    for (const ProbeHit& hit : hits) {
+      if (hit.t < 0.0f) continue;
+      const dvec3 p(inverse * glm::dvec4(dvec3(hit.position), 1));
+      if (std::hypot(p.x, p.z) < 0.1) continue;  // near the axis, directions around it are not defined
+      const Chart chart = chartAt(GetParam(), hit.face, p);
+      if (std::abs(chart.uv.x - 0.5) > 0.49) continue;  // near the seam
+      EXPECT_NEAR(hit.uv.x, chart.uv.x, 2e-4) << "face " << hit.face;
+      EXPECT_NEAR(hit.uv.y, chart.uv.y, 2e-4) << "face " << hit.face;
+      const dvec3 n(hit.normal), along = glm::dmat3(world) * chart.along, up = glm::dmat3(world) * chart.up;
+      const dvec3 tangent = glm::normalize(along - n * glm::dot(n, along));
+      EXPECT_LT(glm::length(dvec3(hit.tangent) - tangent), 2e-3) << "face " << hit.face;
+      EXPECT_GT(glm::dot(dvec3(hit.bitangent), up), 0.0) << "face " << hit.face;
+      EXPECT_NEAR(glm::dot(dvec3(hit.bitangent), n), 0.0, 1e-4);
+      EXPECT_NEAR(glm::dot(dvec3(hit.bitangent), dvec3(hit.tangent)), 0.0, 1e-4);
+      EXPECT_NEAR(glm::length(dvec3(hit.bitangent)), 1.0, 1e-4);
+      compared++;
+    }
+  }
+  EXPECT_GT(compared, 250);
+}
+
 TEST_P(Solids, AgreeWithTheOracle) {
   Random random(100 + static_cast<std::uint32_t>(GetParam()));
   Agreement agreement;
