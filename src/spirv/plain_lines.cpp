@@ -21,7 +21,7 @@ using spv::Op;
 using Words = std::span<const std::uint32_t>;
 
 constexpr std::size_t kHeaderWords = 5, kMaxInstruction = 65535;
-constexpr std::string_view kSet = "NonSemantic.Shader.DebugInfo.100";
+constexpr std::string_view kDebugInfoSet = "NonSemantic.Shader.DebugInfo.100";
 
 struct Location {
   Id file = 0;  // OpString
@@ -67,7 +67,7 @@ class Converter {
   }
 
   void collect(Op op, Words operands) {
-    if (op == Op::OpExtInstImport && operands.size() > 1 && isText(operands.subspan(1), kSet))
+    if (op == Op::OpExtInstImport && operands.size() > 1 && isText(operands.subspan(1), kDebugInfoSet))
       sets_.insert(operands[0]);
     if (op == Op::OpString && operands.size() > 1) strings_[operands[0]] = operands.subspan(1);
     if (op == Op::OpConstant && operands.size() > 2) constants_[operands[1]] = operands[2];

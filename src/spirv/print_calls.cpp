@@ -17,12 +17,12 @@ namespace {
 
 using spv::Op;
 
-constexpr std::string_view kSet = "NonSemantic.DebugPrintf";
+constexpr std::string_view kPrintSet = "NonSemantic.DebugPrintf";
 constexpr std::uint32_t kDebugPrintf = 1;  // its only instruction
 
 bool isPrint(const Module& module, const Instruction& instruction) {
   return instruction.op == Op::OpExtInst && instruction.at(1) == kDebugPrintf &&
-         module.extendedSet(instruction.at(0)) == kSet;
+         module.extendedSet(instruction.at(0)) == kPrintSet;
 }
 
 PrintArgument argumentOf(const Module& module, Id value) {
@@ -178,8 +178,8 @@ class Replacement {
 bool importsDebugPrintf(std::span<const std::uint32_t> words) {
   // OpExtInstImport: opcode, result, then the name as words.
   std::array<std::uint32_t, 6> name{};
-  static_assert(sizeof(name) == kSet.size() + 1);
-  std::memcpy(name.data(), kSet.data(), kSet.size());
+  static_assert(sizeof(name) == kPrintSet.size() + 1);
+  std::memcpy(name.data(), kPrintSet.data(), kPrintSet.size());
   for (std::size_t at = 5; at < words.size();) {
     const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
     const Op op = static_cast<Op>(words[at] & 0xFFFFu);

@@ -12,8 +12,8 @@ namespace quintet::spirv {
 namespace {
 
 using Kind = Type::Kind;
-constexpr int kMaxNesting = 24;     // nesting that is compared or written out
-constexpr int kMaxSteps = 1 << 14;  // of one comparison: nested structures can share parts 2^n times
+constexpr int kMaxNesting = 24;           // nesting that is compared or written out
+constexpr int kMaxComparisons = 1 << 14;  // of one comparison: nested structures can share parts 2^n times
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 40;
 
 std::uint64_t limited(std::uint64_t bytes) { return bytes > kMaxBytes ? 0 : bytes; }
@@ -86,7 +86,7 @@ struct TypeComparison {
   std::optional<std::string> compare(Id a, Id b, int depth) {
     const Type& left = aTypes.get(a);
     const Type& right = bTypes.get(b);
-    if (++steps > kMaxSteps || depth > kMaxNesting) return {};
+    if (++steps > kMaxComparisons || depth > kMaxNesting) return {};
     if (left.kind != right.kind || left.width != right.width || left.isSigned != right.isSigned) return versus(a, b);
     switch (left.kind) {
       case Kind::vector:

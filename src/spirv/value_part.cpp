@@ -11,7 +11,7 @@ namespace {
 
 using spv::Op;
 
-constexpr int kMaxSteps = 1024;  // a malformed module can have cycles
+constexpr int kMaxChain = 1024;  // a malformed module can have cycles
 
 const Type& typeOf(const Module& module, Id id) {
   const Instruction* value = module.definition(id);
@@ -84,7 +84,7 @@ bool enter(const Module& module, const Instruction& value, ValuePart& part) {
 }  // namespace
 
 ValuePart originOf(const Module& module, ValuePart part) {
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxChain; ++step) {
     const Instruction* value = module.definition(part.id);
     if (!value || !enter(module, *value, part)) break;
   }
