@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -93,6 +95,20 @@ std::string pageOf(const std::string& lesson) {
   for (const EmbeddedFile& file : embeddedDocumentation())
     if (file.path.starts_with(number) && file.path.ends_with(".md")) return std::string(file.path);
   return {};
+}
+
+// The names of the lessons, in the order in which lessons/README.md links to their pages.
+std::vector<std::string> lessonsInReadingOrder() {
+  std::vector<std::string> names = program::builtInPrograms();
+  std::erase_if(
+      names, [](const std::string& name) { return !name.starts_with(kLessons) || name.size() < kLessons.size() + 4; });
+  const std::string_view overview = documentText("lessons/README.md");
+  const auto position = [&](const std::string& name) {
+    const std::string page = pageOf(name);
+    return page.empty() ? overview.npos : overview.find(fmt::format("({})", page.substr(kLessons.size())));
+  };
+  std::ranges::stable_sort(names, {}, position);
+  return names;
 }
 
 // A lecture or a zip file: names in the program's folder, and contents.
@@ -270,8 +286,7 @@ HttpResponse Api::copyProgram(const std::string& body) const {
 
 HttpResponse Api::lessons() const {
   Json list = Json::array();
-  for (const std::string& name : program::builtInPrograms()) {
-    if (!name.starts_with(kLessons) || name.size() < kLessons.size() + 4) continue;
+  for (const std::string& name : lessonsInReadingOrder()) {
     std::string title = name.substr(kLessons.size() + 3);
     std::ranges::replace(title, '_', ' ');
     std::error_code ignored;

@@ -158,6 +158,12 @@ TEST_F(LabServer, DescribesProgramsAndLessons) {
 
   const Json lessons = get("/api/lessons").json();
   EXPECT_GT(lessons.size(), 22u);  // lesson 14 has two programs
+  const auto positionOf = [&](const std::string& number) {
+    std::size_t i = 0;
+    while (i < lessons.size() && lessons[i].at("number") != number) ++i;
+    return i;
+  };
+  EXPECT_LT(positionOf("14"), positionOf("06")) << "the order of lessons/README.md";
   for (const Json& lesson : lessons) {
     EXPECT_THAT(get("/api/docs/" + lesson.at("page").get<std::string>()).body, StartsWith("# Lesson")) << lesson;
     EXPECT_EQ(get("/api/docs/" + lesson.at("image").get<std::string>()).headers.at("content-type"), "image/png")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Markdown of the project's pages as elements: headings, paragraphs, lists, tables, code, quotes, images, links and
-// emphasis. HTML in the text stays text.
+// emphasis. Comments on lines of their own are skipped; other HTML stays text.
 import { h } from "./dom";
 
 export interface MarkdownOptions {
@@ -135,6 +135,10 @@ function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
     const line = lines[i]!;
     if (line.trim() === "") {
       ++i;
+      continue;
+    }
+    if (line.startsWith("<!--")) {
+      i = takeWhile(i, (other) => !other.includes("-->")) + 1;
       continue;
     }
     const fence = /^(```+|~~~+)\s*(\w*)/.exec(line);
