@@ -303,13 +303,17 @@ TEST_F(LabSession, EndsAnIdleWorkerAndStartsItAgain) {
 }
 
 TEST_F(LabSession, RejectsMessagesThatAreNoCommands) {
-  const LabProcess server = start({"--sessions", "2"});
+  const LabProcess server = start();
   PageClient text(server);
   text.sendText("hello");
   EXPECT_EQ(text.waitForClose(), 1008u);
   PageClient large(server);
   large.sendText(Json{{"do", "open"}, {"program", std::string((1u << 20) + 1, 'x')}}.dump());
   EXPECT_EQ(large.waitForClose(), 1009u);
+}
+
+TEST_F(LabSession, RejectsMoreSessionsThanTheLimit) {
+  const LabProcess server = start({"--sessions", "2"});
   PageClient first(server), second(server), third(server);
   EXPECT_EQ(third.waitForClose(), 1013u);
   first.send(open());
