@@ -89,7 +89,7 @@ TEST_F(LabServer, ReachesNoFileOutsideOfTheProject) {
   EXPECT_EQ(readTextFile(folder_ / "secret.txt"), "secret");
   const Reply program = get("/api/program?name=..%2F");
   EXPECT_EQ(program.status, 400u);
-  for (const char* to : {"../x", "/tmp/x", "up/x", ".x"})
+  for (const char* to : {"../x", "/x", "up/x", ".x"})
     EXPECT_EQ(server_->request("POST", "/api/programs", Json{{"from", "<programs/ao>"}, {"to", to}}.dump()).status,
               400u)
         << to;
@@ -157,7 +157,7 @@ TEST_F(LabServer, DescribesProgramsAndLessons) {
   EXPECT_EQ(get("/api/program?name=nothing").status, 404u);
 
   const Json lessons = get("/api/lessons").json();
-  EXPECT_GT(lessons.size(), 22u);  // lesson 14 has two programs
+  EXPECT_EQ(lessons.size(), 28u);  // lesson 14 has two programs
   const auto positionOf = [&](const std::string& number) {
     std::size_t i = 0;
     while (i < lessons.size() && lessons[i].at("number") != number) ++i;

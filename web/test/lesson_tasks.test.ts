@@ -22,10 +22,11 @@ function lessonFiles(name: string): { files: Map<string, string>; main: string }
   return { files: new Map(names.map((file) => [file, readFileSync(`${folder}/${name}/${file}`, "utf8")])), main };
 }
 
-test("tasks belong to lessons of the course", () => {
+const kWithoutTasks = ["00_pipeline", "23_monte_carlo", "24_cosine_sampling", "25_next_event", "26_mis", "27_roulette"];
+
+test("every other lesson of the course has a task", () => {
   const pages = readdirSync(`${REPOSITORY}/docs/lessons`).filter((file) => /^\d/.test(file)).map((file) => file.replace(/\.md$/, ""));
-  for (const name of Object.keys(kLessonTasks)) assert.ok(pages.includes(name), name);
-  assert.ok(Object.keys(kLessonTasks).length >= 22);
+  assert.deepEqual([...Object.keys(kLessonTasks), ...kWithoutTasks].sort(), pages.sort());
 });
 
 for (const [name, tasks] of Object.entries(kLessonTasks)) {
