@@ -8,6 +8,4 @@ struct Transmittance {
   vec3 value;
   bool reachedLight;
 };
-struct Distance {
-  float t;
-};
+struct Distance { float t; };  // m

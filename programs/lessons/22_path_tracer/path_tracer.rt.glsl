@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lesson 22: a path tracer in one file. Diffuse surfaces and a lamp in the Cornell box. At each surface the lamp is
 // sampled directly (next-event estimation), and the path continues in a direction with cosine-weighted density. The
-// estimate is unbiased: the average over the frames converges to the exact image.
+// average over the frames converges to the light of paths with at most `bounces` scattering events.
 // scene: path_tracer.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
