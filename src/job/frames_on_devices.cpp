@@ -19,7 +19,7 @@
 namespace quintet::job {
 namespace {
 
-constexpr auto kProgressInterval = std::chrono::milliseconds(50);
+constexpr auto kFramePollInterval = std::chrono::milliseconds(50);
 // Finished frames that wait for an earlier one, per device; they are in host memory.
 constexpr std::size_t kWaitingFrames = 2;
 
@@ -100,7 +100,7 @@ class RenderJob::FrameCrew {
     next_ = frame;
     changed_.notify_all();
     while (true) {
-      changed_.wait_for(lock, kProgressInterval, [&] { return done_.contains(frame) || running_ == 0; });
+      changed_.wait_for(lock, kFramePollInterval, [&] { return done_.contains(frame) || running_ == 0; });
       if (const auto found = done_.find(frame); found != done_.end()) {
         RenderResult result = std::move(found->second);
         done_.erase(found);

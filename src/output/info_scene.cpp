@@ -34,10 +34,10 @@ std::uint64_t imageBytes(const scene::Scene& scene) {
 }
 
 std::string describe(const scene::NamedImage& image) {
-  constexpr const char* kChannels[] = {"", "gray", "gray + alpha", "RGB", "RGBA"};
+  constexpr const char* kChannelNames[] = {"", "gray", "gray + alpha", "RGB", "RGBA"};
   const io::Image& pixels = image.image;
   return fmt::format("{}: {}x{} {}, {} bits", printable(image.name), pixels.width, pixels.height,
-                     kChannels[std::min(pixels.channels, 4u)], 8 * io::bytesPerSample(pixels.type));
+                     kChannelNames[std::min(pixels.channels, 4u)], 8 * io::bytesPerSample(pixels.type));
 }
 
 std::string describe(const scene::Camera& camera) {

@@ -9,7 +9,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr float kNear = 1e-3f;  // of the distance to the center of the box: nearer points are not projected
+constexpr float kNearest = 1e-3f;  // of the distance to the center of the box: nearer points are not projected
 
 vec3 cornerOf(const Bounds3& bounds, std::size_t index) {
   return {index & 1 ? bounds.max.x : bounds.min.x, index & 2 ? bounds.max.y : bounds.min.y,
@@ -27,7 +27,7 @@ std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const
   std::array<vec3, 8> corners;
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] = vec3(cameraFromObject * vec4(cornerOf(bounds, i), 1.0f));
-  const float nearest = -kNear * glm::length(vec3(cameraFromObject * vec4(bounds.center(), 1.0f))) - 1e-6f;
+  const float nearest = -kNearest * glm::length(vec3(cameraFromObject * vec4(bounds.center(), 1.0f))) - 1e-6f;
   for (std::size_t i = 0; i < corners.size(); ++i)
     for (const std::size_t bit : {std::size_t{1}, std::size_t{2}, std::size_t{4}}) {
       if (i & bit) continue;

@@ -92,11 +92,11 @@ ResolvedChannel resolveCamera(const Document& document, int index, std::string_v
 }
 
 // A prefix of pointers to objects of the file.
-struct Collection {
+struct PointedCollection {
   std::string_view prefix;
   std::string_view noun;
 };
-constexpr auto kCollections = std::to_array<Collection>({{"/nodes/", "node"},
+constexpr auto kCollections = std::to_array<PointedCollection>({{"/nodes/", "node"},
                                                          {"/materials/", "material"},
                                                          {"/meshes/", "mesh"},
                                                          {"/cameras/", "camera"},
@@ -111,7 +111,7 @@ std::size_t countOf(const Document& document, std::string_view noun) {
 
 ResolvedChannel resolvePointer(const Document& document, const std::vector<Material>& materials,
                                std::string_view pointer) {
-  for (const Collection& collection : kCollections) {
+  for (const PointedCollection& collection : kCollections) {
     if (!pointer.starts_with(collection.prefix)) continue;
     const std::string_view rest = pointer.substr(collection.prefix.size());
     int index = -1;
