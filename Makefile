@@ -15,8 +15,8 @@ BUILD := build/$(PRESET)
 DEMO  := build/demo
 SCENES := build/scenes
 
-# Render options of the demo: as many samples as possible in 50 seconds.
-RENDER_FLAGS ?= --size 800x450 --time 50
+# Render options of the demo: as many samples as possible in 40 seconds.
+RENDER_FLAGS ?= --size 800x450 --time 40
 BENCH_FLAGS  ?=
 # --only NAME, --fast, --list
 MUTATION_FLAGS ?=

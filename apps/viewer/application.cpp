@@ -19,11 +19,11 @@
 #include "gui/style.h"
 #include "gui/widgets.h"
 #include "job/provenance.h"
+#include "overlay/window_shaders.h"
 #include "panels/panels.h"
 #include "render/renderer/renderer.h"
 #include "reproduce.h"
 #include "view_files.h"
-#include "viewer/window_shaders.h"
 
 namespace quintet::viewer {
 namespace {
@@ -60,7 +60,7 @@ Application::Presentation::Presentation(const Window& window, const ApplicationO
     : context({.device = options.presentDevice, .log = options.engine.log, .surface = window.surfaceSource()}),
       swapchain(context),
       renderer([&] {
-        const WindowShaders shaders = compileWindowShaders(options.engine.caches);
+        const overlay::WindowShaders shaders = overlay::compileWindowShaders(options.engine.caches);
         return gpu::DrawListRenderer(context, swapchain.format(), shaders.vertex, shaders.fragment);
       }()) {}
 
@@ -271,14 +271,14 @@ void Application::prepareLines(gpu::Commands& commands, const gpu::RenderTarget&
   if (!state_.rays.visible() && !presentation_->lines) return;
   std::unique_ptr<gpu::LineRenderer>& lines = presentation_->lines;
   if (!lines) {
-    const WindowShaders shaders = compileLineShaders(options_.engine.caches);
+    const overlay::WindowShaders shaders = overlay::compileLineShaders(options_.engine.caches);
     lines = std::make_unique<gpu::LineRenderer>(presentation_->context, presentation_->swapchain.format(),
                                                 shaders.vertex, shaders.fragment);
   }
   if (presentation_->depthOfLines != state_.rays.depth) {
     presentation_->depthOfLines = state_.rays.depth;
     if (const job::DepthMap* depth = state_.rays.depth.get())
-      lines->setDepth({depth->size.x, depth->size.y}, reversedDepths(*depth));
+      lines->setDepth({depth->size.x, depth->size.y}, overlay::reversedDepths(*depth));
     else
       lines->setDepth({}, nullptr);
   }
@@ -322,8 +322,8 @@ Area Application::layOut() {
   }
   const Area area{{0.0f, top}, glm::max(vec2(display.x - right, display.y - top - bottom), vec2(1.0f))};
   if (state_.ready())
-    state_.placement = fitImage(state_.snapshot->state.size, area.origin, area.size,
-                                state_.fixedSize ? 1.0f / window_.pixelScale() : 1000.0f);
+    state_.placement = overlay::fitImage(state_.snapshot->state.size, area.origin, area.size,
+                                         state_.fixedSize ? 1.0f / window_.pixelScale() : 1000.0f);
   return area;
 }
 
@@ -366,7 +366,7 @@ void Application::imageArea(const Area& area) {
 void Application::drawImage() {
   if (!state_.display || !state_.display->image.bytes) return;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const ImagePlacement& at = state_.placement;
+  const overlay::ImagePlacement& at = state_.placement;
   const vec2 end = at.origin + at.scale * vec2(at.size);
   const bool splits = state_.display->reference.bytes && state_.controls.compare == CompareMode::split;
   const float split = splits ? state_.controls.split : 1.0f;
@@ -461,7 +461,7 @@ void Application::menuBar() {
     if (ImGui::MenuItem("Panels", keysOf(set, Action::togglePanels).c_str(), state_.settings.panels))
       perform(Action::togglePanels);
     if (ImGui::MenuItem("Rays of the pixel", keysOf(set, Action::toggleRays).c_str(), state_.rays.enabled,
-                        state_.rays.overlay.has_value()))
+                        state_.rays.paths.has_value()))
       perform(Action::toggleRays);
     logControl("Rays of the pixel");
     ImGui::MenuItem("Diagnostics", nullptr, &state_.showDiagnostics, !state_.snapshot->diagnostics.empty());
@@ -520,7 +520,7 @@ void Application::perform(Action action) {
     case Action::togglePanels: state_.settings.panels = !state_.settings.panels; return;
     case Action::toggleFullScreen: return window_.toggleFullScreen();
     case Action::toggleRays:
-      if (state_.rays.overlay) state_.rays.enabled = !state_.rays.enabled;
+      if (state_.rays.paths) state_.rays.enabled = !state_.rays.enabled;
       return;
     case Action::toggleTheme:
       state_.settings.theme = state_.settings.theme == Theme::dark ? Theme::light : Theme::dark;

@@ -17,13 +17,13 @@
 #include "gpu/line_list.h"
 #include "io/image.h"
 #include "job/pixel_explanation.h"
+#include "overlay/ray_overlay.h"
 #include "viewer/bindings.h"
 #include "viewer/bookmarks.h"
 #include "viewer/display.h"
 #include "viewer/explanation_tree.h"
 #include "viewer/navigation.h"
 #include "viewer/rate_history.h"
-#include "viewer/ray_overlay.h"
 #include "viewer/session_thread.h"
 #include "viewer/settings.h"
 
@@ -44,13 +44,13 @@ struct Toast {
 
 // The rays of the explained pixel over the image (overlays/rays.cpp).
 struct ShownRays {
-  bool enabled = true;                // by the user
-  std::optional<RayOverlay> overlay;  // unset without an explanation, or if the program has a camera of its own
-  gpu::LineList lines;                // of this frame, pixels of the window
+  bool enabled = true;                       // by the user
+  std::optional<overlay::RayOverlay> paths;  // unset without an explanation, or if the program has a camera of its own
+  gpu::LineList lines;                       // of this frame, pixels of the window
   std::shared_ptr<const job::DepthMap> depth;                // of this frame; null while it is not known
   std::shared_ptr<const job::PixelExplanation> explanation;  // for which the overlay was made
   bool depthRequested = false;                               // SessionThread::showDepth
-  bool visible() const { return enabled && overlay.has_value(); }
+  bool visible() const { return enabled && paths.has_value(); }
 };
 
 // How false color shows the image, and how it is compared.
@@ -108,10 +108,10 @@ struct ViewState {
   bool playing = false;
   double playStart = 0;  // `time` at which frame 0 was shown
   std::optional<uvec2> hoveredPixel;
-  RateHistory imageRates, rayRates;  // images per second, million rays per second
-  ImagePlacement placement;          // of the image, in the current frame
-  uvec2 viewSize{0};                 // for which the window has room
-  std::optional<uvec2> fixedSize;    // of the image; unset: that of the window
+  RateHistory imageRates, rayRates;   // images per second, million rays per second
+  overlay::ImagePlacement placement;  // of the image, in the current frame
+  uvec2 viewSize{0};                  // for which the window has room
+  std::optional<uvec2> fixedSize;     // of the image; unset: that of the window
 
   bool ready() const { return snapshot->phase == Snapshot::Phase::ready; }
   void apply(job::interactive::Command command) { session->apply(std::move(command)); }

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFileName = 128;  // characters
+constexpr std::size_t kMaxName = 128;  // characters
 
 // Of the folders of a process.
 std::string prefixOf(pid_t process) { return fmt::format("quintet-lab-{}-", process); }
@@ -38,7 +38,7 @@ bool isUnsavedName(std::string_view name) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
            c == '.';
   };
-  return !name.empty() && name.size() <= kMaxFileName && name.front() != '.' && std::ranges::all_of(name, allowed);
+  return !name.empty() && name.size() <= kMaxName && name.front() != '.' && std::ranges::all_of(name, allowed);
 }
 
 UnsavedProgram::UnsavedProgram(const std::vector<std::pair<std::string, std::string>>& files)

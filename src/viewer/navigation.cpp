@@ -18,25 +18,7 @@ constexpr float kFast = 4.0f;
 
 }  // namespace
 
-std::optional<uvec2> ImagePlacement::pixelAt(vec2 screen) const {
-  const vec2 position = toImage(screen);
-  if (!(position.x >= 0.0f && position.y >= 0.0f)) return std::nullopt;
-  const uvec2 pixel(position);
-  if (pixel.x >= size.x || pixel.y >= size.y) return std::nullopt;
-  return pixel;
-}
-
-ImagePlacement fitImage(uvec2 image, vec2 origin, vec2 area, float maxScale) {
-  ImagePlacement placement{.origin = origin, .scale = maxScale, .size = image};
-  if (image.x == 0 || image.y == 0) return placement;
-  const vec2 size(image);
-  placement.scale = std::max(std::min({area.x / size.x, area.y / size.y, maxScale}), 1e-6f);
-  placement.origin = origin + 0.5f * (area - placement.scale * size);
-  if (placement.scale == 1.0f) placement.origin = glm::floor(placement.origin);
-  return placement;
-}
-
-interactive::Command dragCommand(Drag drag, vec2 moved, vec2 start, const ImagePlacement& placement) {
+interactive::Command dragCommand(Drag drag, vec2 moved, vec2 start, const overlay::ImagePlacement& placement) {
   switch (drag) {
     case Drag::orbit: return interactive::Orbit{-kDegreesPerPixel * moved.x, kDegreesPerPixel * moved.y};
     case Drag::pan: return interactive::Pan{moved / placement.scale};
@@ -47,7 +29,7 @@ interactive::Command dragCommand(Drag drag, vec2 moved, vec2 start, const ImageP
   return interactive::EndDrag{};
 }
 
-interactive::Command wheelCommand(float steps, vec2 position, const ImagePlacement& placement) {
+interactive::Command wheelCommand(float steps, vec2 position, const overlay::ImagePlacement& placement) {
   return interactive::Zoom{std::pow(kZoomPerStep, steps), placement.toImage(position)};
 }
 

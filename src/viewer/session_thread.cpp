@@ -14,7 +14,7 @@
 #include "job/interactive/event_json.h"
 #include "output/plan.h"
 #include "output/write.h"
-#include "viewer/ray_overlay.h"
+#include "overlay/ray_overlay.h"
 
 namespace quintet::viewer {
 namespace {
@@ -371,7 +371,7 @@ void SessionThread::explainPixel(const ExplainRequest& request) {
     publish();
     throw;
   }
-  next_.explanationUsesCamera = usesCamera(*next_.explanation, session_->camera());
+  next_.explanationUsesCamera = overlay::usesCamera(*next_.explanation, session_->camera());
   explainedRestarts_ = session_->restarts();
   if (options_.onEvent) options_.onEvent(interactive::explainedJson(*next_.explanation, ""));
   publishState();

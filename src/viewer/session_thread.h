@@ -72,7 +72,7 @@ struct Snapshot {
   // Of the last explain(); null before the first one, and if the last one failed.
   std::shared_ptr<const job::PixelExplanation> explanation;
   bool explanationOutdated = false;  // the samples were discarded since
-  // Its rays are those of the scene's camera (viewer::usesCamera()), and the program is still the same.
+  // Its rays are those of the scene's camera (overlay::usesCamera()), and the program is still the same.
   bool explanationUsesCamera = false;
   bool explaining = false;  // an explain() is in progress
 

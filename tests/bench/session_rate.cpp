@@ -27,8 +27,8 @@
 #include "gpu/timer.h"
 #include "job/interactive/light_properties.h"
 #include "job/interactive/session.h"
-#include "viewer/ray_overlay.h"
-#include "viewer/window_shaders.h"
+#include "overlay/ray_overlay.h"
+#include "overlay/window_shaders.h"
 
 namespace quintet::bench {
 namespace {
@@ -230,31 +230,31 @@ class Measurement {
   // Of 25 pixels, explains the one with the most rays, and draws its rays over the image.
   Json explanation() {
     session_->explain({0, 0}, 0);  // compiles the instrumented program
-    viewer::RayOverlay overlay;
+    overlay::RayOverlay paths;
     std::vector<double> explainSeconds;
     for (std::uint32_t i = 0; i < 25; ++i) {
       const Stopwatch watch;
       const job::PixelExplanation explained =
           session_->explain(uvec2(options_.width, options_.height) * uvec2(i % 5 + 1, i / 5 + 1) / 6u, 0);
       explainSeconds.push_back(watch.seconds());
-      viewer::RayOverlay rays = viewer::rayOverlay(explained, 1.0f);
-      if (rays.rays.size() > overlay.rays.size()) overlay = std::move(rays);
+      overlay::RayOverlay rays = overlay::rayOverlay(explained, 1.0f);
+      if (rays.rays.size() > paths.rays.size()) paths = std::move(rays);
     }
     session_->depthMap();  // compiles its program
     const Stopwatch depthWatch;
     const job::DepthMap depth = session_->depthMap();
     const double depthSeconds = depthWatch.seconds();
-    const viewer::OverlayView view{session_->camera(), {.origin = {}, .size = {options_.width, options_.height}}};
+    const overlay::OverlayView view{session_->camera(), {.origin = {}, .size = {options_.width, options_.height}}};
     std::vector<double> seconds;
     gpu::LineList list;
     for (int i = 0; i < options_.repeat; ++i) {
       const Stopwatch lines;
-      list = viewer::overlayLines(overlay, view, {}, &depth);
+      list = overlay::overlayLines(paths, view, {}, &depth);
       seconds.push_back(lines.seconds());
     }
     return {{"explainMilliseconds", milliseconds(quantile(explainSeconds, 0.5))},
             {"depthMapMilliseconds", milliseconds(depthSeconds)},
-            {"rays", overlay.rays.size()},
+            {"rays", paths.rays.size()},
             {"lines", list.lines.size()},
             {"linesHostMilliseconds", milliseconds(quantile(seconds, 0.5))},
             {"linesDeviceMilliseconds", milliseconds(drawingSeconds(list, depth))}};
@@ -263,10 +263,10 @@ class Measurement {
   // Device time of the lines over an image of the size of the session, median.
   double drawingSeconds(const gpu::LineList& list, const job::DepthMap& depth) {
     gpu::Context& context = engine_.context();
-    const viewer::WindowShaders shaders = viewer::compileLineShaders(job::EngineOptions().caches);
+    const overlay::WindowShaders shaders = overlay::compileLineShaders(job::EngineOptions().caches);
     constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
     gpu::LineRenderer renderer(context, kFormat, shaders.vertex, shaders.fragment);
-    renderer.setDepth({depth.size.x, depth.size.y}, viewer::reversedDepths(depth));
+    renderer.setDepth({depth.size.x, depth.size.y}, overlay::reversedDepths(depth));
     const gpu::Image target(context, {.width = options_.width,
                                       .height = options_.height,
                                       .format = kFormat,

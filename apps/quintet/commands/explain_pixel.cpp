@@ -25,8 +25,8 @@
 #include "job/pixel_explainer.h"
 #include "output/explanation_text.h"
 #include "output/write.h"
+#include "overlay/ray_image.h"
 #include "program/load.h"
-#include "viewer/ray_image.h"
 
 namespace quintet::cli {
 namespace {
@@ -183,12 +183,12 @@ void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
                 const output::OutputPlan& plan, const job::PixelExplanation& explanation, const Options& options,
                 Console& console) {
   job::RenderJob job(engine, job::resolve(options.request, program), console, scene);
-  viewer::requireSceneCamera(explanation, job.camera());
+  overlay::requireSceneCamera(explanation, job.camera());
   setWorkStage("rendering");
   const job::RenderResult result = renderImage(job, explanation, options, console);
   const job::DepthMap depth = job::renderDepthMap(engine, job);
-  const io::Image image = viewer::drawRays(engine.context(), explanation, depth,
-                                           output::displayImage(plan, *result.film), job::EngineOptions().caches);
+  const io::Image image = overlay::drawRays(engine.context(), explanation, depth,
+                                            output::displayImage(plan, *result.film), job::EngineOptions().caches);
   console.clear();
   console.write(options.image, io::encodePng(image, job::metadataOf(result.provenance)));
 }

@@ -22,7 +22,7 @@
 #include "job/interactive/event_json.h"
 #include "job/interactive/session.h"
 #include "output/write.h"
-#include "viewer/ray_image.h"
+#include "overlay/ray_image.h"
 
 namespace quintet::cli {
 namespace {
@@ -109,14 +109,14 @@ class Script {
       throw UsageError("the program has changed since the pixel was explained; use 'explain' again");
     if (output::fileKind(file) != output::FileKind::png)
       throw UsageError(fmt::format("{}: an image with rays must be a PNG file", file));
-    viewer::requireSceneCamera(explained_->explanation, explained_->camera);
+    overlay::requireSceneCamera(explained_->explanation, explained_->camera);
     gpu::requireGraphicsQueue(engine_.context());
   }
 
   void writeRays(const output::OutputPlan& plan, const std::string& file) {
     const job::RenderResult result = session_.result();
-    const io::Image image = viewer::drawRays(engine_.context(), explained_->explanation, session_.depthMap(),
-                                             output::displayImage(plan, *result.film), job::EngineOptions().caches);
+    const io::Image image = overlay::drawRays(engine_.context(), explained_->explanation, session_.depthMap(),
+                                              output::displayImage(plan, *result.film), job::EngineOptions().caches);
     console_.write(file, io::encodePng(image, job::metadataOf(result.provenance)));
   }
 

@@ -12,8 +12,8 @@
 #include "base/diagnostic.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
+#include "overlay/box_outline.h"
 #include "overlays/overlays.h"
-#include "viewer/box_outline.h"
 
 namespace quintet::viewer {
 namespace {
@@ -53,11 +53,11 @@ void selectionOutline(const ViewState& state, const Area& area) {
   if (state.selection.kind != Selection::Kind::instance || state.selection.index >= scene.instances.size()) return;
   const InstanceOutline& instance = scene.instances[state.selection.index];
   if (instance.animated) return;  // the snapshot has no transform of this frame
-  const ImagePlacement& at = state.placement;
+  const overlay::ImagePlacement& at = state.placement;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect({area.origin.x, area.origin.y}, {area.origin.x + area.size.x, area.origin.y + area.size.y});
-  for (const auto& [a, b] : boxOutline(state.snapshot->camera, at.size, instance.bounds,
-                                       transformOf(scene, state.snapshot->state, state.selection.index))) {
+  for (const auto& [a, b] : overlay::boxOutline(state.snapshot->camera, at.size, instance.bounds,
+                                                transformOf(scene, state.snapshot->state, state.selection.index))) {
     const vec2 from = at.origin + at.scale * a, to = at.origin + at.scale * b;
     list.AddLine({from.x, from.y}, {to.x, to.y}, kShade, 3.0f * state.scale);
     list.AddLine({from.x, from.y}, {to.x, to.y}, kSelected, 1.3f * state.scale);
@@ -66,7 +66,7 @@ void selectionOutline(const ViewState& state, const Area& area) {
 }
 
 void explainedPixel(const ViewState& state, const Area& area) {
-  const ImagePlacement& at = state.placement;
+  const overlay::ImagePlacement& at = state.placement;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect({area.origin.x, area.origin.y}, {area.origin.x + area.size.x, area.origin.y + area.size.y});
   const auto mark = [&](const render::Region& pixels, ImU32 color) {
@@ -115,7 +115,7 @@ void legend(const ViewState& state, const Area& area) {
 void splitLine(ViewState& state, const Area& area) {
   if (!state.reference || state.controls.compare != CompareMode::split) return;
   const float scale = state.scale;
-  const ImagePlacement& image = state.placement;
+  const overlay::ImagePlacement& image = state.placement;
   const float width = image.scale * static_cast<float>(image.size.x);
   const float height = image.scale * static_cast<float>(image.size.y);
   const float x = std::round(image.origin.x + state.controls.split * width);

@@ -11,8 +11,8 @@
 
 #include "gui/gui.h"
 #include "gui/widgets.h"
+#include "overlay/ray_overlay.h"
 #include "overlays/overlays.h"
-#include "viewer/ray_overlay.h"
 
 namespace quintet::viewer {
 namespace {
@@ -33,7 +33,7 @@ std::shared_ptr<const job::DepthMap> shownDepth(const ViewState& state) {
   return fits ? snapshot.depth : nullptr;
 }
 
-OverlayView viewOf(const ViewState& state) { return {state.snapshot->camera, state.placement}; }
+overlay::OverlayView viewOf(const ViewState& state) { return {state.snapshot->camera, state.placement}; }
 
 }  // namespace
 
@@ -42,17 +42,17 @@ void updateRays(ViewState& state) {
   const bool usesCamera = state.snapshot->explanationUsesCamera;
   if (rays.explanation != state.explanation) {
     rays.explanation = state.explanation;
-    rays.overlay.reset();
+    rays.paths.reset();
     rays.lines = {};
-    if (state.explanation) rays.overlay = rayOverlay(*state.explanation, state.snapshot->scene->size);
-    if (rays.overlay && rays.overlay->rays.empty()) rays.overlay.reset();
-    if (rays.overlay && !usesCamera) {
-      rays.overlay.reset();
+    if (state.explanation) rays.paths = overlay::rayOverlay(*state.explanation, state.snapshot->scene->size);
+    if (rays.paths && rays.paths->rays.empty()) rays.paths.reset();
+    if (rays.paths && !usesCamera) {
+      rays.paths.reset();
       state.addMessage(
           {Message::Kind::note, "the rays are not drawn over the image, because the program has a camera of its own"});
     }
-  } else if (rays.overlay && !usesCamera) {  // the program has changed since
-    rays.overlay.reset();
+  } else if (rays.paths && !usesCamera) {  // the program has changed since
+    rays.paths.reset();
     rays.lines = {};
   }
   if (rays.depthRequested == rays.visible()) return;
@@ -64,30 +64,30 @@ void rayLines(ViewState& state, const Area& area) {
   state.rays.lines = {};
   if (!state.rays.visible()) return;
   const float pixels = ImGui::GetIO().DisplayFramebufferScale.x;  // of the target, per unit of ImGui
-  OverlayView view = viewOf(state);
+  overlay::OverlayView view = viewOf(state);
   view.placement.origin *= pixels;
   view.placement.scale *= pixels;
   state.rays.depth = shownDepth(state);
   state.rays.lines =
-      overlayLines(*state.rays.overlay, view, {pixels * state.scale, state.selectedRay}, state.rays.depth.get());
+      overlay::overlayLines(*state.rays.paths, view, {pixels * state.scale, state.selectedRay}, state.rays.depth.get());
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect({area.origin.x, area.origin.y}, {area.origin.x + area.size.x, area.origin.y + area.size.y});
   list.AddCallback(drawExternally, nullptr);
   list.PopClipRect();
   const ImVec2 pointer = ImGui::GetIO().MousePos;
   if (!Gui::wantsMouse() &&
-      rayAt(*state.rays.overlay, viewOf(state), {pointer.x, pointer.y}, kPointerDistance * state.scale))
+      overlay::rayAt(*state.rays.paths, viewOf(state), {pointer.x, pointer.y}, kPointerDistance * state.scale))
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 }
 
 void rayLegendBox(const ViewState& state, const Area& area) {
   if (!state.rays.visible()) return;
-  const std::vector<RayLegendEntry> entries = rayLegend(*state.rays.overlay);
+  const std::vector<overlay::RayLegendEntry> entries = overlay::rayLegend(*state.rays.paths);
   const float scale = state.scale;
   const float row = ImGui::GetTextLineHeightWithSpacing();
   const float sample = 26.0f * scale, margin = 10.0f * scale;
   float textWidth = 0.0f;
-  for (const RayLegendEntry& entry : entries)
+  for (const overlay::RayLegendEntry& entry : entries)
     textWidth = std::max(textWidth, ImGui::CalcTextSize(entry.text.c_str()).x);
   const ImVec2 size{sample + textWidth + 3.0f * margin, static_cast<float>(entries.size()) * row + 2.0f * margin};
   const ImVec2 end{area.origin.x + area.size.x - margin, area.origin.y + area.size.y - margin};
@@ -97,7 +97,7 @@ void rayLegendBox(const ViewState& state, const Area& area) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled(begin, end, kShade, 6.0f * scale);
   float y = begin.y + margin + 0.5f * ImGui::GetTextLineHeight();
-  for (const RayLegendEntry& entry : entries) {
+  for (const overlay::RayLegendEntry& entry : entries) {
     ImVec4 color = ImGui::ColorConvertU32ToFloat4(entry.color);
     const float left = begin.x + margin, width = 2.0f * scale;
     if (entry.hidden) {
@@ -115,7 +115,7 @@ void rayLegendBox(const ViewState& state, const Area& area) {
 
 bool selectRay(ViewState& state, vec2 position) {
   if (!state.rays.visible()) return false;
-  const auto ray = rayAt(*state.rays.overlay, viewOf(state), position, kPointerDistance * state.scale);
+  const auto ray = overlay::rayAt(*state.rays.paths, viewOf(state), position, kPointerDistance * state.scale);
   if (ray && ray == state.selectedRay)
     state.selectRow(std::nullopt);
   else if (ray)

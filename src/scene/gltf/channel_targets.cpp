@@ -97,10 +97,10 @@ struct PointedCollection {
   std::string_view noun;
 };
 constexpr auto kCollections = std::to_array<PointedCollection>({{"/nodes/", "node"},
-                                                         {"/materials/", "material"},
-                                                         {"/meshes/", "mesh"},
-                                                         {"/cameras/", "camera"},
-                                                         {"/extensions/KHR_lights_punctual/lights/", "light"}});
+                                                                {"/materials/", "material"},
+                                                                {"/meshes/", "mesh"},
+                                                                {"/cameras/", "camera"},
+                                                                {"/extensions/KHR_lights_punctual/lights/", "light"}});
 
 std::size_t countOf(const Document& document, std::string_view noun) {
   if (noun == "node") return document.model.nodes.size();

@@ -17,8 +17,8 @@
 #include "base/file.h"
 #include "harness.h"
 #include "io/codec.h"
+#include "overlay/window_shaders.h"
 #include "temp_folder.h"
-#include "viewer/window_shaders.h"
 
 namespace quintet::viewer {
 namespace {
@@ -373,7 +373,7 @@ TEST_F(SessionThreadTest, OpensAProgramAsSoonAsItHasTheParameter) {
 }
 
 TEST(WindowShaders, Compile) {
-  const WindowShaders shaders = compileWindowShaders({});
+  const overlay::WindowShaders shaders = overlay::compileWindowShaders({});
   EXPECT_FALSE(shaders.vertex.empty());
   EXPECT_FALSE(shaders.fragment.empty());
 }

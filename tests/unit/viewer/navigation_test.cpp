@@ -12,24 +12,24 @@ namespace {
 namespace interactive = job::interactive;
 
 TEST(Navigation, FitsTheImageIntoItsArea) {
-  const ImagePlacement wide = fitImage({200, 100}, {10, 20}, {100, 100}, 8.0f);
+  const overlay::ImagePlacement wide = overlay::fitImage({200, 100}, {10, 20}, {100, 100}, 8.0f);
   EXPECT_FLOAT_EQ(wide.scale, 0.5f);
   EXPECT_EQ(wide.origin, vec2(10, 45));
-  const ImagePlacement tall = fitImage({100, 200}, {0, 0}, {400, 400}, 8.0f);
+  const overlay::ImagePlacement tall = overlay::fitImage({100, 200}, {0, 0}, {400, 400}, 8.0f);
   EXPECT_FLOAT_EQ(tall.scale, 2.0f);
   EXPECT_EQ(tall.origin, vec2(100, 0));
-  const ImagePlacement limited = fitImage({101, 100}, {0, 0}, {400, 400}, 1.0f);
+  const overlay::ImagePlacement limited = overlay::fitImage({101, 100}, {0, 0}, {400, 400}, 1.0f);
   EXPECT_FLOAT_EQ(limited.scale, 1.0f);
   EXPECT_EQ(limited.origin, vec2(149, 150)) << "whole pixels, so that the image stays sharp";
 }
 
 TEST(Navigation, SurvivesAreasWithoutPixels) {
-  EXPECT_GT(fitImage({200, 100}, {0, 0}, {0, 0}, 8.0f).scale, 0.0f);
-  EXPECT_EQ(fitImage({0, 0}, {0, 0}, {100, 100}, 8.0f).size, uvec2(0));
+  EXPECT_GT(overlay::fitImage({200, 100}, {0, 0}, {0, 0}, 8.0f).scale, 0.0f);
+  EXPECT_EQ(overlay::fitImage({0, 0}, {0, 0}, {100, 100}, 8.0f).size, uvec2(0));
 }
 
 TEST(Navigation, FindsThePixelBelowAPosition) {
-  const ImagePlacement placement = fitImage({200, 100}, {10, 20}, {100, 100}, 8.0f);
+  const overlay::ImagePlacement placement = overlay::fitImage({200, 100}, {10, 20}, {100, 100}, 8.0f);
   EXPECT_EQ(placement.pixelAt({10, 45}), uvec2(0, 0));
   EXPECT_EQ(placement.pixelAt({109.9f, 94.9f}), uvec2(199, 99));
   EXPECT_EQ(placement.pixelAt({9.9f, 50}), std::nullopt);
@@ -38,7 +38,7 @@ TEST(Navigation, FindsThePixelBelowAPosition) {
 }
 
 TEST(Navigation, DragsTheSceneWithThePointer) {
-  const ImagePlacement placement = fitImage({200, 100}, {0, 0}, {100, 50}, 8.0f);  // scale 0.5
+  const overlay::ImagePlacement placement = overlay::fitImage({200, 100}, {0, 0}, {100, 50}, 8.0f);  // scale 0.5
   // To the right: the scene turns to the right, so the camera moves to the left. Down: the camera moves up.
   const auto orbit = std::get<interactive::Orbit>(dragCommand(Drag::orbit, {10, 20}, {0, 0}, placement));
   EXPECT_LT(orbit.right, 0.0f);
@@ -60,7 +60,7 @@ TEST(Navigation, DragsTheSceneWithThePointer) {
 }
 
 TEST(Navigation, ZoomsToThePointerWithTheWheel) {
-  const ImagePlacement placement = fitImage({200, 100}, {0, 0}, {100, 50}, 8.0f);
+  const overlay::ImagePlacement placement = overlay::fitImage({200, 100}, {0, 0}, {100, 50}, 8.0f);
   const auto closer = std::get<interactive::Zoom>(wheelCommand(2.0f, {10, 5}, placement));
   const auto away = std::get<interactive::Zoom>(wheelCommand(-2.0f, {10, 5}, placement));
   EXPECT_GT(closer.factor, 1.0f);

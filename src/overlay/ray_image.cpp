@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/ray_image.h"
+#include "overlay/ray_image.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "viewer/line_image.h"
-#include "viewer/ray_overlay.h"
-#include "viewer/window_shaders.h"
+#include "overlay/line_image.h"
+#include "overlay/ray_overlay.h"
+#include "overlay/window_shaders.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr float kPlainHeight = 800.0f;  // pixels: widths grow with larger images
@@ -37,4 +37,4 @@ io::Image drawRays(gpu::Context& context, const job::PixelExplanation& explanati
                    reversedDepths(depth));
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/line_image.h"
+#include "overlay/line_image.h"
 
 #include <cstddef>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include "gpu/image.h"
 #include "gpu/line_renderer.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -44,4 +44,4 @@ io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const i
   return io::toChannels(rgba, image.channels);
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/ray_overlay.h"
+#include "overlay/ray_overlay.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "viewer/camera_projection.h"
+#include "overlay/camera_projection.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 using job::ExplainedEvent;
@@ -435,4 +435,4 @@ std::vector<RayLegendEntry> rayLegend(const RayOverlay& overlay) {
   return entries;
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of an explained pixel as lines over an image of the scene: what is drawn, in which colors, and which ray is
 // at a position of the image. gpu::LineRenderer draws the lines.
-#ifndef QUINTET_VIEWER_RAY_OVERLAY_H
-#define QUINTET_VIEWER_RAY_OVERLAY_H
+#ifndef QUINTET_OVERLAY_RAY_OVERLAY_H
+#define QUINTET_OVERLAY_RAY_OVERLAY_H
 
 #include <cstddef>
 #include <cstdint>
@@ -15,10 +15,10 @@
 #include "gpu/line_list.h"
 #include "job/depth_map.h"
 #include "job/pixel_explanation.h"
+#include "overlay/image_placement.h"
 #include "scene/model/scene.h"
-#include "viewer/navigation.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 enum class OverlayRayKind {
   camera,    // the first ray, and those with the same origin
@@ -81,5 +81,5 @@ struct RayLegendEntry {
 };
 std::vector<RayLegendEntry> rayLegend(const RayOverlay& overlay);  // of what the overlay contains; empty without rays
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

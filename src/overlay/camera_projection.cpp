@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/camera_projection.h"
+#include "overlay/camera_projection.h"
 
 #include "render/scene/camera.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 CameraProjection::CameraProjection(const scene::Camera& camera, uvec2 size)
     : cameraFromWorld_(glm::inverse(camera.worldFromCamera)),
@@ -16,4 +16,4 @@ vec2 CameraProjection::toImage(const vec3& point) const {
   return (0.5f + 0.5f * plane * vec2(1.0f, -1.0f)) * size_;
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

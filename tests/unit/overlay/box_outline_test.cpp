@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/box_outline.h"
+#include "overlay/box_outline.h"
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr uvec2 kImage{200, 100};
@@ -74,4 +74,4 @@ TEST(BoxOutline, IsEmptyWithoutABoxOrAnImage) {
 }
 
 }  // namespace
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/camera_projection.h"
+#include "overlay/camera_projection.h"
 
 #include <gtest/gtest.h>
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr uvec2 kProjected{200, 100};
@@ -60,4 +60,4 @@ TEST(CameraProjection, ReversesDepthsLinearly) {
 }
 
 }  // namespace
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An image of a render with the rays of an explained pixel over it.
-#ifndef QUINTET_VIEWER_RAY_IMAGE_H
-#define QUINTET_VIEWER_RAY_IMAGE_H
+#ifndef QUINTET_OVERLAY_RAY_IMAGE_H
+#define QUINTET_OVERLAY_RAY_IMAGE_H
 
 #include <filesystem>
 
@@ -11,7 +11,7 @@
 #include "job/pixel_explanation.h"
 #include "scene/model/scene.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 // Throws Error if the program did not use the camera of the scene for the explained pixel: rays cannot be drawn over
 // its image.
@@ -22,5 +22,5 @@ void requireSceneCamera(const job::PixelExplanation& explanation, const scene::C
 io::Image drawRays(gpu::Context& context, const job::PixelExplanation& explanation, const job::DepthMap& depth,
                    const io::Image& image, const std::filesystem::path& caches);
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

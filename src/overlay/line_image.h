@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws lines over an image in host memory.
-#ifndef QUINTET_VIEWER_LINE_IMAGE_H
-#define QUINTET_VIEWER_LINE_IMAGE_H
+#ifndef QUINTET_OVERLAY_LINE_IMAGE_H
+#define QUINTET_OVERLAY_LINE_IMAGE_H
 
 #include <cstdint>
 #include <memory>
@@ -11,9 +11,9 @@
 #include "gpu/context.h"
 #include "gpu/line_list.h"
 #include "io/image.h"
-#include "viewer/window_shaders.h"
+#include "overlay/window_shaders.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 // Returns a copy of `image` (8 bits per sample, sRGB, opaque) with the lines. `depths` has `depthSize` values
 // (gpu::LineRenderer::setDepth); null: nothing hides lines. `shaders`: compileLineShaders(). Blocks. Throws Error if
@@ -21,5 +21,5 @@ namespace quintet::viewer {
 io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const io::Image& image,
                     const gpu::LineList& list, uvec2 depthSize, std::shared_ptr<const std::vector<float>> depths);
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

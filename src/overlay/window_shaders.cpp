@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/window_shaders.h"
+#include "overlay/window_shaders.h"
 
 #include <span>
 #include <string>
@@ -15,7 +15,7 @@ namespace quintet {
 std::span<const EmbeddedFile> embeddedWindowShaders();
 }
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 std::vector<std::uint32_t> compile(const shader::Compiler& compiler, std::string_view file) {
@@ -44,4 +44,4 @@ WindowShaders compileLineShaders(const std::filesystem::path& caches) {
   return {compile(compiler, "lines.vert"), compile(compiler, "lines.frag")};
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/ray_overlay.h"
+#include "overlay/ray_overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 using job::ExplainedEvent;
@@ -318,4 +318,4 @@ TEST(RayOverlay, ReversesDepths) {
 }
 
 }  // namespace
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

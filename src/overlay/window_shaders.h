@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shaders of gpu::DrawListRenderer and gpu::LineRenderer (shaders/window), compiled.
-#ifndef QUINTET_VIEWER_WINDOW_SHADERS_H
-#define QUINTET_VIEWER_WINDOW_SHADERS_H
+#ifndef QUINTET_OVERLAY_WINDOW_SHADERS_H
+#define QUINTET_OVERLAY_WINDOW_SHADERS_H
 
 #include <cstdint>
 #include <filesystem>
 #include <vector>
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 struct WindowShaders {
   std::vector<std::uint32_t> vertex, fragment;  // SPIR-V
@@ -17,5 +17,5 @@ struct WindowShaders {
 WindowShaders compileWindowShaders(const std::filesystem::path& caches);  // of gpu::DrawListRenderer
 WindowShaders compileLineShaders(const std::filesystem::path& caches);    // of gpu::LineRenderer
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // From world space to the image of a camera. A lens is replaced by a pinhole at its center.
-#ifndef QUINTET_VIEWER_CAMERA_PROJECTION_H
-#define QUINTET_VIEWER_CAMERA_PROJECTION_H
+#ifndef QUINTET_OVERLAY_CAMERA_PROJECTION_H
+#define QUINTET_OVERLAY_CAMERA_PROJECTION_H
 
 #include "base/math.h"
 #include "scene/model/scene.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 class CameraProjection {
  public:
@@ -32,5 +32,5 @@ class CameraProjection {
   bool orthographic_;
 };
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays over the image of a scene with a wall: before it, behind it, selected.
-#include "viewer/ray_image.h"
+#include "overlay/ray_image.h"
 
 #include <array>
 #include <memory>
@@ -17,12 +17,12 @@
 #include "job/engine.h"
 #include "job/observer.h"
 #include "job/render_job.h"
+#include "overlay/line_image.h"
+#include "overlay/ray_overlay.h"
 #include "program/load.h"
 #include "temp_folder.h"
-#include "viewer/line_image.h"
-#include "viewer/ray_overlay.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 using testing::HasSubstr;
@@ -145,4 +145,4 @@ TEST_F(RayImageTest, RequiresTheCameraOfTheScene) {
 }
 
 }  // namespace
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines that the device draws, pixel by pixel, against a rasterizer that follows the definitions of gpu::LineList.
-#include "viewer/line_image.h"
+#include "overlay/line_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 
 #include "harness.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr uvec2 kLineImageSize{64, 48};
@@ -173,4 +173,4 @@ TEST(LineImage, KeepsTheImageWithoutLines) {
 }
 
 }  // namespace
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edges of a box in the image of a camera, to mark the selected object.
-#ifndef QUINTET_VIEWER_BOX_OUTLINE_H
-#define QUINTET_VIEWER_BOX_OUTLINE_H
+#ifndef QUINTET_OVERLAY_BOX_OUTLINE_H
+#define QUINTET_OVERLAY_BOX_OUTLINE_H
 
 #include <utility>
 #include <vector>
@@ -9,7 +9,7 @@
 #include "base/math.h"
 #include "scene/model/scene.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 
 // Pixels, from the top left corner; can be outside of the image.
 using ImageLine = std::pair<vec2, vec2>;
@@ -19,5 +19,5 @@ using ImageLine = std::pair<vec2, vec2>;
 std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const Bounds3& bounds,
                                   const mat4& worldFromObject);
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
 #endif

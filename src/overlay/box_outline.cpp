@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "viewer/box_outline.h"
+#include "overlay/box_outline.h"
 
 #include <array>
 #include <cstddef>
 
-#include "viewer/camera_projection.h"
+#include "overlay/camera_projection.h"
 
-namespace quintet::viewer {
+namespace quintet::overlay {
 namespace {
 
 constexpr float kNearest = 1e-3f;  // of the distance to the center of the box: nearer points are not projected
@@ -43,4 +43,4 @@ std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const
   return lines;
 }
 
-}  // namespace quintet::viewer
+}  // namespace quintet::overlay
