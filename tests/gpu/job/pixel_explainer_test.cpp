@@ -172,7 +172,12 @@ int checkNumbers(const PixelExplanation& e, const vec3& emitted) {
   const ExplainedEvent* emission = nullptr;
   int absorbed = 0;
   for (const ExplainedEvent& event : e.events) {
-    if (event.type == "light" && event.find("pdf")) light = &event;
+    if (event.type == "light" && event.find("pdf")) {
+      light = &event;
+      EXPECT_NE(light->text("light"), "none");
+      EXPECT_GT(light->number("probability"), 0.0f);
+      EXPECT_LE(light->number("probability"), 1.0f);
+    }
     if (event.type == "ray" && event.text("rayType") == "shadow") shadow = &event;
     if (event.type == "emission") emission = &event;
     if (event.type != "contribution") continue;

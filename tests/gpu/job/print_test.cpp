@@ -18,6 +18,7 @@
 namespace quintet::job {
 namespace {
 
+using testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -298,7 +299,7 @@ TEST_F(PrintTest, PixelsOutsideOfTheImageAreAnError) {
     renderBox(request);
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(), "the pixels 20,15,5,1 to print are outside the rendered part of the image, 0,0,24,16");
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("20,15,5,1"), HasSubstr("0,0,24,16")));
   }
 }
 
@@ -306,7 +307,7 @@ TEST_F(PrintTest, AProgramWithoutPrintsGivesANote) {
   RenderRequest request = makeRequest({8, 8}, 1);
   request.print.emplace();
   render(request, program::loadProgram("normals"));
-  EXPECT_THAT(observer_.notes, Contains(HasSubstr("normals: no shader calls debugPrintfEXT")));
+  EXPECT_THAT(observer_.notes, Contains(AllOf(HasSubstr("normals: "), HasSubstr("debugPrintfEXT"))));
   EXPECT_THAT(observer_.lines, IsEmpty());
 }
 

@@ -4,9 +4,11 @@
 #define QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
 #include "../../unit/scene/csg_oracle.h"
 #include "probe.h"
@@ -18,7 +20,8 @@ using oracle::dvec3;
 
 struct Expected {
   std::optional<oracle::Crossing> hit;
-  bool doubtful = false;  // a ray that differs by a few rounding errors has a different hit
+  std::string difference;  // of the probe's hit; empty if it agrees within the tolerances
+  bool doubtful = false;   // it differs, but a ray that differs by a few rounding errors has a different hit, too
 };
 
 inline oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
@@ -27,11 +30,44 @@ inline oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
           dvec3(objectFromWorld * glm::dvec4(dvec3(ray.direction), 0.0))};
 }
 
-// `crossingsOf`: oracle::Crossings of an object-space ray.
+// How the hit of the probe differs from that of the oracle; empty if it does not.
+inline std::string differenceOf(const ProbeHit& hit, const ProbeRay& ray,
+                                const std::optional<oracle::Crossing>& expected, const mat4& worldFromObject) {
+  if ((hit.t >= 0.0f) != expected.has_value())
+    return fmt::format("t {} instead of {}", hit.t, expected ? expected->t : -1.0);
+  if (hit.visible == expected.has_value()) return fmt::format("visible {}", hit.visible);
+  if (!expected) return {};
+  // Rounding errors are proportional to a length. For grazing rays, the error of t is larger by 1 / cosine.
+  const dvec3 d(ray.direction);
+  const dvec3 normal =
+      glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected->normal);
+  const double length = glm::length(d), cosine = std::max(std::abs(glm::dot(normal, d)) / length, 0.01);
+  const double scale =
+      glm::length(dvec3(ray.origin)) + std::abs(expected->t) * length + glm::length(dvec3(hit.position));
+  const double t = static_cast<double>(hit.t);
+  if (!(std::abs(t - expected->t) <= 4e-6 * scale / length / cosine))
+    return fmt::format("t {} instead of {}", t, expected->t);
+  if (hit.leaf != expected->primitive) return fmt::format("leaf {} instead of {}", hit.leaf, expected->primitive);
+  if (hit.front != expected->entering) return fmt::format("front {}", hit.front);
+  if (hit.flipped != expected->flipped) return fmt::format("flipped {}", hit.flipped);
+  // The probe's normal is on the side of the ray; the oracle's normal points out of the tree.
+  const double along = glm::dot(dvec3(hit.normal), hit.front ? normal : -normal);
+  if (!(along > 0.999)) return fmt::format("normal with the cosine {}", along);
+  if (!(std::abs(glm::length(dvec3(hit.normal)) - 1.0) < 1e-5)) return "normal that is not normalized";
+  const double apart = glm::length(dvec3(hit.position) - (dvec3(ray.origin) + t * d));
+  if (!(apart < 1e-5 * scale / cosine)) return fmt::format("position {} beside the ray", apart);
+  return {};
+}
+
+// Compares the hit of a probe. `crossingsOf`: oracle::Crossings of an object-space ray.
 template <class CrossingsOf>
-Expected expectHit(const CrossingsOf& crossingsOf, const ProbeRay& ray, const mat4& worldFromObject) {
+Expected expectHit(const CrossingsOf& crossingsOf, const ProbeHit& hit, const ProbeRay& ray,
+                   const mat4& worldFromObject) {
   const oracle::Ray local = toObject(ray, worldFromObject);
-  Expected result{oracle::firstHit(crossingsOf(local), ray.tmin, ray.tmax), false};
+  Expected result;
+  result.hit = oracle::firstHit(crossingsOf(local), ray.tmin, ray.tmax);
+  result.difference = differenceOf(hit, ray, result.hit, worldFromObject);
+  if (result.difference.empty()) return result;
   const double e = 4e-6 * (glm::length(local.origin) + 4.0);
   for (int k = 0; k < 6 && !result.doubtful; ++k) {
     dvec3 by(0.0);
@@ -44,30 +80,6 @@ Expected expectHit(const CrossingsOf& crossingsOf, const ProbeRay& ray, const ma
                                  std::abs(moved->t - result.hit->t) * glm::length(local.direction) > 0.1));
   }
   return result;
-}
-
-inline void compareHit(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected,
-                       const mat4& worldFromObject) {
-  ASSERT_EQ(hit.t >= 0.0f, expected.hit.has_value())
-      << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
-  EXPECT_EQ(hit.visible, !expected.hit.has_value());
-  if (!expected.hit) return;
-  // Rounding errors are proportional to a length. For grazing rays, the error of t is larger by 1 / cosine.
-  const dvec3 d(ray.direction);
-  const dvec3 normal =
-      glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
-  const double length = glm::length(d), cosine = std::abs(glm::dot(normal, d)) / length;
-  const double scale =
-      glm::length(dvec3(ray.origin)) + std::abs(expected.hit->t) * length + glm::length(dvec3(hit.position));
-  EXPECT_NEAR(hit.t, expected.hit->t, 4e-6 * scale / length / std::max(cosine, 0.01));
-  EXPECT_EQ(hit.leaf, expected.hit->primitive);
-  EXPECT_EQ(hit.front, expected.hit->entering);
-  EXPECT_EQ(hit.flipped, expected.hit->flipped);
-  // The probe's normal is on the side of the ray; the oracle's normal points out of the tree.
-  EXPECT_GT(glm::dot(dvec3(hit.normal), hit.front ? normal : -normal), 0.999);
-  EXPECT_NEAR(glm::length(hit.normal), 1.0f, 1e-5f);
-  const dvec3 point = dvec3(ray.origin) + static_cast<double>(hit.t) * d;
-  EXPECT_LT(glm::length(dvec3(hit.position) - point), 1e-5 * scale / std::max(cosine, 0.01));
 }
 
 }  // namespace quintet::test

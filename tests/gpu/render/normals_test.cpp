@@ -25,5 +25,18 @@ TEST(NormalsProgram, ShowsShadingAndGeometricNormals) {
   }
 }
 
+TEST(NormalsProgram, HasABlackBackground) {
+  SceneBuilder scene;
+  scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), unlit(vec3(1.0f)))
+      .camera(orthographic(vec3(9, 0, 3), vec3(9, 0, 0), 0.05f));
+  ImageOptions options;
+  options.program = program::loadProgram("normals");
+  options.batches = 2;
+  for (const bool transparent : {false, true}) {
+    options.transparent = transparent;
+    expectUniform(renderImage(scene, options), vec4(0, 0, 0, transparent ? 0 : 1));
+  }
+}
+
 }  // namespace
 }  // namespace quintet::test

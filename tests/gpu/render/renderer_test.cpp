@@ -311,5 +311,39 @@ TEST(BuiltInProgram, AoShowsTheOpenPartOfTheHemisphere) {
   expectUniform(renderImage(scene, options), vec4(1.0f), {.error = 1e-5});
 }
 
+// A wall at one side hides half of the sky, a low one less: the directions must cover all azimuths evenly.
+TEST(BuiltInProgram, AoTracesAroundTheNormalEvenly) {
+  for (const float height : {1000.0f, 1.0f}) {
+    for (const float turn : {0.3f, 1.9f, 3.5f, 5.1f}) {
+      SCOPED_TRACE(testing::Message() << height << " " << turn);
+      const mat4 turned = glm::rotate(mat4(1.0f), turn, glm::normalize(vec3(0.2f, 1.0f, -0.4f)));
+      const vec3 up = turned * vec4(0, 1, 0, 0);
+      SceneBuilder scene;
+      scene.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)), turned);
+      scene.add(quad({1, 0, -5000}, {0, 0, 10000}, {0, height, 0}), lambert(vec3(0.5f)), turned);
+      scene.camera(orthographic(0.4f * up, vec3(0.0f), 0.001f));
+      ImageOptions options;
+      options.program = program::loadProgram("ao");
+      options.batches = 32;
+      // The form factor of a strip of infinite length at the distance 1.
+      const float hidden = 0.5f * (1.0f - 1.0f / std::sqrt(1.0f + height * height));
+      expectUniform(renderImage(scene, options), vec4(vec3(1.0f - hidden), 1.0f), {.error = 0.01, .rounding = 1e-3});
+    }
+  }
+}
+
+TEST(BuiltInProgram, AoHasABackground) {
+  SceneBuilder scene;
+  scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), lambert(vec3(0.5f)))
+      .camera(orthographic(vec3(9, 0, 3), vec3(9, 0, 0), 0.05f));
+  ImageOptions options;
+  options.program = program::loadProgram("ao");
+  options.batches = 2;
+  options.set = {"background=0.25,0.5,0.75"};
+  expectUniform(renderImage(scene, options), vec4(0.25f, 0.5f, 0.75f, 1.0f));
+  options.transparent = true;
+  expectUniform(renderImage(scene, options), vec4(0.0f));
+}
+
 }  // namespace
 }  // namespace quintet::test

@@ -155,6 +155,23 @@ TEST(Alpha, MultipliesVertexColors) {
                 {.error = 0.01});
 }
 
+// The alpha of each corner counts at this corner.
+TEST(Alpha, InterpolatesVertexColors) {
+  scene::Geometry sheet = kSheet;
+  for (const float alpha : {0.8f, 0.6f, 0.2f, 0.4f}) sheet.colors.emplace_back(1.0f, 1.0f, 1.0f, alpha);
+  SceneBuilder scene = lookingThrough(sheet, veil({0.2f, 3.0f, 0.0f}, 1.0f, scene::AlphaMode::blend), 0.0f);
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    SCOPED_TRACE(corner);
+    scene.scene.cameras.clear();
+    const vec3 at = 0.9999f * sheet.positions[corner];
+    scene.camera(orthographic(at + vec3(0, 0, 9), at, 0.0001f));
+    const float alpha = sheet.colors[corner].a;
+    expectUniform(renderImage(scene, batches(64)),
+                  vec4(alpha * vec3(0.2f, 3.0f, 0.0f) + (1.0f - alpha) * kBehind, 1.0f),
+                  {.error = 0.03, .rounding = 2e-3});
+  }
+}
+
 // The surfaces along a ray are tested independently. Here the indices of triangles and geometries are (2,0), (1,8),
 // (0,16).
 TEST(Alpha, TestsSurfacesOfOneMeshIndependently) {

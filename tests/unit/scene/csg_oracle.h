@@ -216,6 +216,9 @@ inline std::vector<Boundary> torus(const Ray& ray, double minor) {
 inline Crossings crossings(const scene::Primitive& primitive, const Ray& ray, std::uint32_t index = 0) {
   const dmat4 back = glm::inverse(dmat4(primitive.objectFromPrimitive));
   const Ray local{dvec3(back * glm::dvec4(ray.origin, 1.0)), dvec3(back * glm::dvec4(ray.direction, 0.0))};
+  // All canonical solids are within 2 of the origin.
+  const double along = glm::dot(local.direction, local.direction);
+  if (glm::length(local.at(-glm::dot(local.origin, local.direction) / along)) > 2.01) return {};
   std::vector<detail::Boundary> boundary;
   switch (primitive.type) {
     case scene::PrimitiveType::sphere: boundary = detail::sphere(local); break;

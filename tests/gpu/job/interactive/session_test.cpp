@@ -447,7 +447,10 @@ TEST_F(SessionTest, PicksWhatIsVisible) {
   EXPECT_EQ(picked->geometry, 0u);
   const Bounds3 bounds = session->bounds("right");
   EXPECT_NEAR(picked->position.z, bounds.max.z, 1e-5f);
-  EXPECT_NEAR(picked->position.x, 3, 0.2f);
+  // The ray goes through the center of the pixel, which is half a pixel right of and below that of the image of 40x24.
+  const float halfHeight = std::tan(0.5f * session->camera().verticalFov) * (8.0f - bounds.max.z);
+  EXPECT_NEAR(picked->position.x, 3 + halfHeight / 24, 1e-4f);
+  EXPECT_NEAR(picked->position.y, -halfHeight / 24, 1e-4f);
   EXPECT_NEAR(picked->distance, glm::length(picked->position - vec3(3, 0, 8)), 1e-4f);
   for (const vec3& normal : {picked->normal, picked->geometricNormal})
     EXPECT_LT(glm::length(normal - vec3(0, 0, 1)), 1e-5f);
@@ -485,6 +488,7 @@ TEST_F(SessionTest, PicksSolidsAndBoxes) {
   ASSERT_TRUE(picked);
   EXPECT_NEAR(picked->position.z, 1, 1e-4f);
   EXPECT_EQ(picked->primitive, 1u);
+  EXPECT_TRUE(picked->front);
   const std::vector<std::byte> image = lesson->result().film->image(0).data;
   lesson->pick({20, 12});
   lesson->apply(SetSamples{2});
