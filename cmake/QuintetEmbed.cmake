@@ -15,20 +15,25 @@ function(quintet_embed TARGET SYMBOL ROOT)
   target_sources(${TARGET} PRIVATE ${out})
 endfunction()
 
-# quintet_embed_folders(TARGET SYMBOL ROOT FOLDERS folder… [DEPENDS file…]) does the same for all files of folders below
-# ROOT ("." is ROOT itself), recursively and as they are when the target is built: the assembler copies them, which is
-# faster for images and pages. A folder can be missing.
+# quintet_embed_folders(TARGET SYMBOL ROOT NAMESPACE namespace FOLDERS folder… [BUILT] [DEPENDS file…]) does the same for
+# all files of folders below ROOT ("." is ROOT itself), recursively and as they are when the target is built: the assembler
+# copies them, which is faster for images and pages. A folder can be missing. BUILT: a command of the build, whose output is
+# in DEPENDS, writes the folders.
 function(quintet_embed_folders TARGET SYMBOL ROOT)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "BUILT" "NAMESPACE" "FOLDERS;DEPENDS" ${ARGN})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${SYMBOL}.cpp)
   set(files)
-  foreach(folder IN LISTS ARG_FOLDERS)
+  set(globbed ${ARG_FOLDERS})
+  if(ARG_BUILT)
+    set(globbed)
+  endif()
+  foreach(folder IN LISTS globbed)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${ROOT}/${folder}/*)
     list(APPEND files ${found})
   endforeach()
   add_custom_command(
     OUTPUT ${out}
-    COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DSYMBOL=${SYMBOL} -DROOT=${ROOT} "-DFOLDERS=${ARG_FOLDERS}"
+    COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DSYMBOL=${SYMBOL} -DROOT=${ROOT} -DNAMESPACE=${ARG_NAMESPACE} "-DFOLDERS=${ARG_FOLDERS}"
             -P ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
     DEPENDS ${files} ${ARG_DEPENDS} ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
     COMMENT "Embedding ${SYMBOL}"

@@ -4,8 +4,9 @@
 #
 #   scripts/spirv.sh FOLDER COMMAND…     for example: scripts/spirv.sh spirv quintet run lessons/05_shadow
 #
-# The command runs with an empty cache of shaders. Each shader is written as FOLDER/NAME.spv and FOLDER/NAME.spvasm; the
-# names are those of the files. Requires spirv-dis and spirv-val (package spirv-tools).
+# The command runs with an empty cache of shaders, and also compiles those that the binary contains. Each shader is written as
+# FOLDER/NAME.spv and FOLDER/NAME.spvasm; the names are those of the files. Requires spirv-dis and spirv-val (package
+# spirv-tools).
 set -euo pipefail
 if (($# < 2)); then
     sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" >&2
@@ -17,7 +18,7 @@ mkdir -p "$folder"
 cache=$(mktemp -d)
 trap 'rm -rf "$cache"' EXIT
 result=0
-QUINTET_CACHE_DIR=$cache "$@" || result=$?
+QUINTET_NO_SHIPPED_SHADERS=1 QUINTET_CACHE_DIR=$cache "$@" || result=$?
 
 # Prints the 32-bit word at a byte offset of a file.
 word() { od -An -v -tu4 -j "$2" -N 4 "$1" | tr -d ' '; }

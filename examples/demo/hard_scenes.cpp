@@ -167,6 +167,42 @@ std::vector<std::byte> foliage() {
   return glb.finish();
 }
 
+std::vector<std::byte> thicket() {
+  constexpr int kStems = 160, kLeavesPerStem = 12;
+  constexpr float kSide = 5.0f, kHills = 0.3f;
+  GlbWriter glb;
+  const int soil = addDiffuse(glb, "soil", {0.33f, 0.27f, 0.20f});
+  glb.addObject("ground", terrain(kSide, 64, kHills, 7), soil);
+  Random random(43);
+  TriangleMesh stems, leaves;
+  for (int s = 0; s < kStems; ++s) {
+    const float x = random(-0.45f, 0.45f) * kSide, z = random(-0.45f, 0.30f) * kSide;
+    const std::vector<vec3> curve =
+        stem({x, terrainHeight(x, z, kHills, 7) - 0.02f, z}, random(0.3f, 1.1f), anyDirection(random) * vec3(1, 0, 1));
+    stems.append(tube(curve, 0.010f, 0.003f, 6));
+    for (int i = 0; i < kLeavesPerStem; ++i) {
+      const auto at = static_cast<std::size_t>(random(2.0f, 12.99f));
+      const vec3 outward = glm::normalize(vec3(random(-1, 1), random(-0.2f, 0.5f), random(-1, 1)) + 1e-3f);
+      const float length = random(0.10f, 0.28f);
+      // A sheet of 44 triangles, pointed at both ends, bent downwards.
+      const vec3 side = glm::normalize(glm::cross(outward, vec3(0, 1, 0)));
+      leaves.append(parametric(2, 12, false, false, [&](float u, float v) {
+        const bool tip = v == 0.0f || v == 1.0f;
+        const float half = tip ? 0.0f : 0.2f * length * std::sin(3.1415927f * v) * (2.0f * u - 1.0f);
+        return curve[at] + length * v * (outward - vec3(0, 0.5f * v, 0)) + half * side + vec3(0, std::abs(half), 0);
+      }));
+    }
+  }
+  computeNormals(leaves);
+  glb.addObject("stems", stems,
+                glb.addMaterial({.name = "bark", .baseColor = {0.24f, 0.18f, 0.12f, 1}, .roughness = 0.85f}));
+  glb.addObject(
+      "leaves", leaves,
+      glb.addMaterial({.name = "leaf", .baseColor = {0.20f, 0.42f, 0.10f, 1}, .roughness = 0.4f, .doubleSided = true}));
+  glb.addCamera("main", {0, 1.15f, 3.0f}, {0, 0.35f, 0}, 40.0f, kWide);
+  return glb.finish();
+}
+
 SkySettings testSky() {
   SkySettings sky;
   sky.sunDirection = glm::normalize(vec3(0.78f, 0.55f, 0.28f));

@@ -142,10 +142,10 @@ std::vector<std::byte> planeLight() {
 }
 
 std::span<const TestScene> testScenes() {
-  static constexpr TestScene kScenes[] = {{"cornell", cornell},        {"glass", glass}, {"furnace", furnace},
-                                          {"many_lights", manyLights}, {"bench", bench}, {"plane_light", planeLight},
-                                          {"lanterns", lanterns},      {"panes", panes}, {"window", window},
-                                          {"foliage", foliage}};
+  static constexpr TestScene kScenes[] = {{"cornell", cornell},        {"glass", glass},    {"furnace", furnace},
+                                          {"many_lights", manyLights}, {"bench", bench},    {"plane_light", planeLight},
+                                          {"lanterns", lanterns},      {"panes", panes},    {"window", window},
+                                          {"foliage", foliage},        {"thicket", thicket}};
   return kScenes;
 }
 

@@ -26,12 +26,13 @@ std::vector<std::byte> manyLights();  // 400 emissive triangles of very differen
 std::vector<std::byte> bench();       // about 100 k triangles of terrain, 60 instances of three rocks
 std::vector<std::byte> planeLight();
 
-// Scenes that are difficult to sample (hard_scenes.cpp). The last two are for testSky().
+// Scenes that are difficult to sample (hard_scenes.cpp). The last three are for testSky().
 inline constexpr std::size_t kLanterns = 10'000;
 std::vector<std::byte> lanterns();  // 10,000 emissive triangles of very different power between low walls
 std::vector<std::byte> panes();     // thin panes, clear, tinted and frosted, and solids of glass under light panels
 std::vector<std::byte> window();    // a room with one opening
 std::vector<std::byte> foliage();   // alpha-masked leaves on stems over hilly ground
+std::vector<std::byte> thicket();   // about 100 k triangles of leaves, stems and ground, without alpha and instances
 
 SkySettings testSky();  // clear; a low sun of radius 1.5 degrees shines into `window`
 

@@ -4,6 +4,27 @@
 #ifndef QUINTET_FEATURES_GLSL
 #define QUINTET_FEATURES_GLSL
 
+#include "shared/features.h"
+
+#ifdef QUINTET_SPECIALIZE  // the values are set when the program is known (src/shader/specialization.h)
+layout(constant_id = QUINTET_ID_SOLID_TRANSMISSION) const bool kHasSolidTransmission = true;
+layout(constant_id = QUINTET_ID_THIN_TRANSMISSION) const bool kHasThinTransmission = true;
+layout(constant_id = QUINTET_ID_PANES) const bool kHasPanes = true;
+layout(constant_id = QUINTET_ID_CLEARCOAT) const bool kHasClearcoat = true;
+layout(constant_id = QUINTET_ID_SHEEN) const bool kHasSheen = true;
+layout(constant_id = QUINTET_ID_DIFFUSE_TRANSMISSION) const bool kHasDiffuseTransmission = true;
+layout(constant_id = QUINTET_ID_ANISOTROPY) const bool kHasAnisotropy = true;
+layout(constant_id = QUINTET_ID_IRIDESCENCE) const bool kHasIridescence = true;
+layout(constant_id = QUINTET_ID_DISPERSION) const bool kHasDispersion = true;
+layout(constant_id = QUINTET_ID_SCATTERING) const bool kHasScattering = true;
+layout(constant_id = QUINTET_ID_NESTED_MEDIA) const bool kHasNestedMedia = true;
+layout(constant_id = QUINTET_ID_TRIANGLE_LIGHTS) const bool kHasTriangleLights = true;
+layout(constant_id = QUINTET_ID_SOLID_LIGHTS) const bool kHasSolidLights = true;
+layout(constant_id = QUINTET_ID_PUNCTUAL_LIGHTS) const bool kHasPunctualLights = true;
+layout(constant_id = QUINTET_ID_ENVIRONMENT) const bool kHasEnvironment = true;
+layout(constant_id = QUINTET_ID_VERTEX_COLORS) const bool kHasVertexColors = true;
+layout(constant_id = QUINTET_ID_TEXTURE_SLOTS) const uint kTextureSlots = 0xFFFFFFFFu;
+#else
 #ifdef QUINTET_NO_SOLID_TRANSMISSION
 const bool kHasSolidTransmission = false;  // light enters closed solids
 #else
@@ -84,15 +105,16 @@ const bool kHasVertexColors = false;
 #else
 const bool kHasVertexColors = true;
 #endif
+#ifndef QUINTET_TEXTURE_SLOTS
+#define QUINTET_TEXTURE_SLOTS 0xFFFFFFFFu
+#endif
+const uint kTextureSlots = QUINTET_TEXTURE_SLOTS;  // bit k: a material has texture kTexture… k
+#endif
 #ifdef QUINTET_NO_SEEDS
 const bool kHasAlpha = false;  // no any-hit shader tests alpha
 #else
 const bool kHasAlpha = true;
 #endif
-#ifndef QUINTET_TEXTURE_SLOTS
-#define QUINTET_TEXTURE_SLOTS 0xFFFFFFFFu
-#endif
-const uint kTextureSlots = QUINTET_TEXTURE_SLOTS;  // bit k: a material has texture kTexture… k
 // These are tested by #ifdef, because they also remove members and stages: QUINTET_NO_SEEDS, QUINTET_NO_TRANSMITTANCE
 // (visibility of shadow rays is binary: no panes, no alpha blend), QUINTET_NO_PROCEDURALS (no solids, no CSG trees),
 // QUINTET_NO_CSG, QUINTET_NO_TORUS, QUINTET_NO_PROCEDURAL_ALPHA and QUINTET_NO_PROCEDURAL_PANES.

@@ -2,14 +2,20 @@
 #include "job/engine.h"
 
 #include <cstdlib>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/embedded.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "gpu/device_list.h"
 #include "gpu/error.h"
+
+namespace quintet {
+std::span<const EmbeddedFile> shippedPrograms();  // src/program/shipped
+}
 
 namespace quintet::job {
 
@@ -95,6 +101,7 @@ gpu::PipelineCache& Engine::pipelineCache(std::size_t device) {
 shader::Compiler makeCompiler(const std::filesystem::path& caches) {
   shader::CompilerOptions options;
   if (!caches.empty()) options.cacheFolder = caches / "shaders";
+  if (!std::getenv("QUINTET_NO_SHIPPED_SHADERS")) options.shipped = shippedPrograms();
   return shader::Compiler(options);
 }
 

@@ -21,24 +21,6 @@ namespace {
 
 constexpr std::uint32_t kMostDataWords = 4096;  // of the data of a call that is logged: 16 KiB
 
-std::vector<std::string> usedFiles(const Program& program) {
-  std::vector<std::string> files;
-  const auto add = [&](const std::string& file) {
-    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
-  };
-  add(program.rayGeneration);
-  for (const MissShader& miss : missShaders(program)) add(miss.file);
-  for (const HitGroup& group : program.hitGroups) {
-    for (const auto& [ray, shaders] : group.shaders) {
-      add(shaders.closestHit);
-      add(shaders.anyHit);
-      add(shaders.intersection);
-    }
-  }
-  for (const Callable& callable : program.callables) add(callable.file);
-  return files;
-}
-
 // Adds the messages and files of one stage. Code that stages share (common text, an included file) gives the same message
 // in each of them, which is kept once.
 void addResult(CompiledProgram& compiled, shader::Result& result) {
@@ -72,6 +54,24 @@ void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t
 }
 
 }  // namespace
+
+std::vector<std::string> stageFiles(const Program& program) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string& file) {
+    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  add(program.rayGeneration);
+  for (const MissShader& miss : missShaders(program)) add(miss.file);
+  for (const HitGroup& group : program.hitGroups) {
+    for (const auto& [ray, shaders] : group.shaders) {
+      add(shaders.closestHit);
+      add(shaders.anyHit);
+      add(shaders.intersection);
+    }
+  }
+  for (const Callable& callable : program.callables) add(callable.file);
+  return files;
+}
 
 bool usesLibrary(const Program& program, const std::string& file) {
   std::set<std::string> seen{file};
@@ -128,7 +128,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
                         Instrumentation instrumentation) {
   const Stopwatch clock;
   if (hasErrors(program.diagnostics)) return {.stages = {}, .diagnostics = program.diagnostics};
-  const std::vector<std::string> files = usedFiles(program);
+  const std::vector<std::string> files = stageFiles(program);
   std::vector<shader::Result> results(files.size());
   CompiledProgram compiled;
   compiled.stages.resize(files.size());

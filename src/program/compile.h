@@ -48,6 +48,9 @@ std::string userFile(const Program& program, const std::string& file);
 // program does not contain, which can do so.
 bool usesLibrary(const Program& program, const std::string& file);
 
+// Returns the files of the stages that the program uses, in the order of CompiledProgram::stages.
+std::vector<std::string> stageFiles(const Program& program);
+
 // Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is its position in
 // CompiledProgram::stages.
 shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,

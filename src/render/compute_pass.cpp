@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/compute_pass.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 
 #include "base/error.h"
 #include "quintet/shared/frame.h"
 #include "quintet/shared/pass.h"
+#include "shader/library.h"
 
 namespace quintet::render {
 
 std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set,
                                                const shader::Compiler& compiler, const std::string& name) {
-  shader::Source source;
-  source.stage = shader::Stage::compute;
-  source.name = name + ".comp";
-  source.text = fmt::format("#version 460\n#include <quintet/passes/{}.glsl>\n", name);
+  const shader::Source source = shader::passSource(name);
   const shader::Result result = compiler.compile(source);
   if (!result.ok())
     throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());

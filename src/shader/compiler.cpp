@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A compilation validates the source, finds the files that it can include, looks up the key in the cache, and runs
 // glslang only if that fails. The result of spirv-opt, which takes most of the time, has a key of its own, made from the
-// output of glslang: programs whose definitions differ often have the same stages.
+// output of glslang: programs whose definitions differ often have the same stages. Shaders that the build has compiled only
+// get their specialization constants; this is tried first, so that the result does not depend on the caches.
 #include "shader/compiler.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spirv-tools/libspirv.h>
 #include <shaderc/shaderc.hpp>
 
@@ -24,6 +26,7 @@
 #include "shader/optimizer.h"
 #include "shader/spirv_cache.h"
 #include "shader/stage_builtins.h"
+#include "spirv/module.h"
 #include "spirv/source_text.h"
 
 namespace quintet::shader {
@@ -52,10 +55,8 @@ void addOptions(Hasher& hasher, const Source& source, const CompilerOptions& opt
   for (const auto& [name, value] : source.defines) hasher.add(name).add(value);
 }
 
-Inputs findInputs(const Source& source, const CompilerOptions& options, IncludeResolver& files) {
-  Inputs inputs;
-  Hasher hasher;
-  addOptions(hasher, source, options);
+// Adds the texts that `source` can read.
+void addTexts(Hasher& hasher, Inputs& inputs, IncludeResolver& files) {
   std::deque<const SourceFile*> open{&files.root()};
   std::set<const SourceFile*> seen{&files.root()};
   while (!open.empty()) {
@@ -71,7 +72,33 @@ Inputs findInputs(const Source& source, const CompilerOptions& options, IncludeR
       if (seen.insert(target).second) open.push_back(target);
     }
   }
+}
+
+Inputs findInputs(const Source& source, const CompilerOptions& options, IncludeResolver& files) {
+  Inputs inputs;
+  Hasher hasher;
+  addOptions(hasher, source, options);
+  addTexts(hasher, inputs, files);
   inputs.key = hasher.finish();
+  return inputs;
+}
+
+// The same for a module that is shipped. Its key does not contain definitions that no text has, so that stages which differ
+// only in those share a module.
+Inputs findShippedInputs(Source source, const CompilerOptions& options, IncludeResolver& files) {
+  Inputs inputs;
+  Hasher texts;
+  addTexts(texts, inputs, files);
+  const std::vector<const SourceFile*> all = files.files();
+  std::erase_if(source.defines, [&](const auto& define) {
+    return std::ranges::none_of(
+        all, [&](const SourceFile* file) { return file->text.find(define.first) != std::string_view::npos; });
+  });
+  std::ranges::sort(source.defines);
+  Hasher hasher;
+  hasher.add("shipped");
+  addOptions(hasher, source, options);
+  inputs.key = hasher.add(texts.finish().hex()).finish();
   return inputs;
 }
 
@@ -245,6 +272,21 @@ GlslangRun runGlslang(const shaderc::Compiler& compiler, const Source& source, c
   return run;
 }
 
+GenericSource requireGeneric(const Source& source) {
+  std::optional<GenericSource> generic = makeGeneric(source);
+  if (!generic) throw Error(source.name + ": the definitions of features differ from those of the renderer");
+  return *std::move(generic);
+}
+
+// Adds the files on disk that were read.
+void addFiles(Result& result, const IncludeResolver& files) {
+  for (const SourceFile* file : files.files())
+    if (file != &files.root() && !file->diskPath.empty()) {
+      result.files.push_back(file->diskPath);
+      result.fileHashes.push_back(Hasher().add(file->text).finish());
+    }
+}
+
 }  // namespace
 
 struct Compiler::Impl {
@@ -258,11 +300,35 @@ struct Compiler::Impl {
     return *compiler;
   }
 
+  std::vector<std::uint32_t> specialized(const Source& source, IncludeResolver& files) const;
+
   CompilerOptions options;
   SpirvCache cache;
   std::once_flag once;
   std::optional<shaderc::Compiler> compiler;
 };
+
+// Returns the SPIR-V of a source that is shipped; empty for others.
+std::vector<std::uint32_t> Compiler::Impl::specialized(const Source& source, IncludeResolver& files) const {
+  if (options.shipped.empty() || !options.optimize || !source.optimize) return {};
+  const std::optional<GenericSource> generic = makeGeneric(source);
+  if (!generic) return {};
+  const Hash key = findShippedInputs(generic->source, options, files).key;
+  std::vector<std::uint32_t> words = findShipped(options.shipped, key);
+  if (words.empty()) return {};
+  SpecializationValues values;
+  Hasher hasher;
+  hasher.add("specialize").add(kOptimizerVersion).add(spvSoftwareVersionString()).add(key.hex());
+  for (const auto& [id, value] : generic->values) {
+    hasher.add(std::uint64_t{id}).add(std::uint64_t{value});
+    values[id] = {value};
+  }
+  const Hash specialization = hasher.finish();
+  if (auto entry = cache.load(specialization)) return std::move(entry->spirv);
+  words = specialize(words, values);
+  cache.store(specialization, {words, {}});
+  return words;
+}
 
 Compiler::Compiler(const CompilerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Compiler::~Compiler() = default;
@@ -274,6 +340,12 @@ Result Compiler::compile(const Source& source) const {
   IncludeResolver files(source, impl_->options, embeddedShaderLibrary());
   if (auto problem = validate(source, files.root())) {
     result.diagnostics.push_back(std::move(*problem));
+    return result;
+  }
+  if (std::vector<std::uint32_t> spirv = impl_->specialized(source, files); !spirv.empty()) {
+    result.spirv = std::move(spirv);
+    result.shipped = true;
+    addFiles(result, files);
     return result;
   }
   const Inputs inputs = findInputs(source, impl_->options, files);
@@ -302,12 +374,28 @@ Result Compiler::compile(const Source& source) const {
   }
   explainMissingBuiltIns(result.diagnostics, source.stage);
   explainOutgoingPayload(result.diagnostics, source.stage, files);
-  for (const SourceFile* file : files.files())
-    if (file != &files.root() && !file->diskPath.empty()) {
-      result.files.push_back(file->diskPath);
-      result.fileHashes.push_back(Hasher().add(file->text).finish());
-    }
+  addFiles(result, files);
   return result;
+}
+
+Hash Compiler::shippedKey(const Source& source) const {
+  const GenericSource generic = requireGeneric(source);
+  IncludeResolver files(generic.source, impl_->options, embeddedShaderLibrary());
+  return findShippedInputs(generic.source, impl_->options, files).key;
+}
+
+ShippedModule Compiler::ship(const Source& source) const {
+  const GenericSource generic = requireGeneric(source);
+  IncludeResolver files(generic.source, impl_->options, embeddedShaderLibrary());
+  const Inputs inputs = findShippedInputs(generic.source, impl_->options, files);
+  GlslangRun run;
+  runOnDeepStack(stackBytesFor(inputs.textBytes),
+                 [&] { run = runGlslang(impl_->shadercCompiler(), generic.source, impl_->options, files); });
+  if (!run.diagnostics.empty()) throw Error(run.diagnostics.front().format());
+  for (const auto& [from, included] : run.includes)
+    if (!inputs.includes.contains({from, included}))
+      throw Error(fmt::format("{}: the include of {} was not found before the compilation", from, included));
+  return {inputs.key, spirv::withInterfaceNames(shader::optimize(run.spirv, impl_->options.debugInfo))};
 }
 
 std::vector<std::uint32_t> Compiler::optimize(const std::vector<std::uint32_t>& words) const {

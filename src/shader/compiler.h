@@ -13,6 +13,7 @@
 #include "base/diagnostic.h"
 #include "base/hash.h"
 #include "shader/source.h"
+#include "shader/specialization.h"
 
 namespace quintet::shader {
 
@@ -22,6 +23,7 @@ struct Result {
   std::vector<std::filesystem::path> files;  // files on disk that were read, other than Source::text; for --watch
   std::vector<Hash> fileHashes;              // of the compiled texts of `files`, in the same order
   bool fromCache = false;
+  bool shipped = false;  // made from a module of CompilerOptions::shipped
   bool ok() const { return !spirv.empty(); }
 };
 
@@ -38,6 +40,13 @@ class Compiler {
   // The optimizations of `compile`, for modules that were changed after a compilation without them (Source::optimize).
   // Thread-safe; uses the cache. Throws Error if the module is invalid.
   std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words) const;
+
+  // The key of the module that ship() makes of `source`.
+  Hash shippedKey(const Source& source) const;
+
+  // Compiles `source` for CompilerOptions::shipped: a module for all values of its definitions of features. Throws Error if the
+  // compiler has a message, or if the key does not cover an included file.
+  ShippedModule ship(const Source& source) const;
 
  private:
   struct Impl;

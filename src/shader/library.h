@@ -3,8 +3,11 @@
 #ifndef QUINTET_SHADER_LIBRARY_H
 #define QUINTET_SHADER_LIBRARY_H
 
+#include <string>
+
 #include "base/embedded.h"
 #include "base/hash.h"
+#include "shader/source.h"
 
 namespace quintet {
 
@@ -12,6 +15,9 @@ namespace quintet {
 std::span<const EmbeddedFile> embeddedShaderLibrary();
 
 namespace shader {
+// Returns the source of a compute pass: quintet/passes/NAME.glsl.
+Source passSource(const std::string& name);
+
 // Identifies the content of the library: two binaries of the same version can differ.
 Hash libraryHash();
 }  // namespace shader

@@ -63,7 +63,44 @@ std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool deb
   return result;
 }
 
+// What the constants change in code that is optimized already. Of the ray generation shader of the path tracer for a scene
+// without lights, this leaves 1 % more words than the performance passes with the same constants from the start.
+void registerRemoval(spvtools::Optimizer& optimizer) {
+  optimizer.RegisterPass(spvtools::CreateCCPPass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass(false))
+      .RegisterPass(spvtools::CreateBlockMergePass())
+      .RegisterPass(spvtools::CreateSimplificationPass())
+      .RegisterPass(spvtools::CreateIfConversionPass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass(false))
+      .RegisterPass(spvtools::CreateRedundancyEliminationPass())
+      .RegisterPass(spvtools::CreateVectorDCEPass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateBlockMergePass())
+      .RegisterPass(spvtools::CreateSimplificationPass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass(false));
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, const SpecializationValues& values) {
+  std::vector<std::uint32_t> result;
+  std::string message;
+  bool succeeded = false;
+  runOnDeepStack(stackBytesFor(words.size() * sizeof(std::uint32_t)), [&] {
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
+    optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+      if (level <= SPV_MSG_ERROR) message = text;
+    });
+    registerSpecialization(optimizer, values);
+    registerRemoval(optimizer);
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false);
+    succeeded = optimizer.Run(words.data(), words.size(), &result, options);
+  });
+  if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));
+  return result;
+}
 
 std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
   return run(words, debugInfo, false, {});

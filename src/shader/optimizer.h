@@ -20,6 +20,10 @@ std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, boo
 // Values of specialization constants by constant_id: the bits, one word for up to 32 bits, else two.
 using SpecializationValues = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
 
+// Sets specialization constants of a module that `optimize` has made, and removes the code that becomes dead. The module is
+// trusted. Throws Error if a pass fails.
+std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, const SpecializationValues& values);
+
 // As `optimize`, for SPIR-V of unknown origin. With `values`, all specialization constants become constants: those that are
 // missing there have their defaults. Without, they stay unknown.
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,

@@ -5,10 +5,12 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/embedded.h"
 #include "shader/stage.h"
 
 namespace quintet::shader {
@@ -34,6 +36,9 @@ struct CompilerOptions {
   bool optimize = true;                               // run spirv-opt
   // Keep sources, lines and names in the SPIR-V. The code is the same; spirv::withoutDebugInfo removes them.
   bool debugInfo = true;
+  // Modules that Compiler::ship() has made, by shippedName(), sorted by path. They replace the compilation of sources with
+  // their key, with `optimize` only. They have no sources and no lines, and names only of types and global variables.
+  std::span<const EmbeddedFile> shipped = {};
 };
 
 }  // namespace quintet::shader

@@ -6,6 +6,7 @@
 #include <spirv/unified1/NonSemanticShaderDebugInfo100.h>
 #include <algorithm>
 #include <bit>
+#include <set>
 #include <utility>
 
 #include "spirv/source_text.h"
@@ -458,7 +459,11 @@ std::vector<Id> valueOperands(const Instruction& instruction) {
   return ids;
 }
 
-std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words) {
+namespace {
+
+// Returns a copy without debug information, except the names of ids that `hasName` selects, and of their members.
+template <class Predicate>
+std::vector<std::uint32_t> stripped(std::span<const std::uint32_t> words, const Predicate& hasName) {
   using spv::Op;
   std::vector<std::uint32_t> result(words.begin(),
                                     words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kHeaderWords)));
@@ -481,12 +486,16 @@ std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words
       at += count;
       continue;
     }
-    switch (static_cast<Op>(words[at] & 0xFFFFu)) {
+    const Op op = static_cast<Op>(words[at] & 0xFFFFu);
+    const bool isName = op == Op::OpName || op == Op::OpMemberName;
+    if (isName && (count < 2 || !hasName(words[at + 1]))) {
+      at += count;
+      continue;
+    }
+    switch (op) {
       case Op::OpSourceContinued:
       case Op::OpSource:
       case Op::OpSourceExtension:
-      case Op::OpName:
-      case Op::OpMemberName:
       case Op::OpString:
       case Op::OpLine:
       case Op::OpNoLine:
@@ -498,6 +507,25 @@ std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words
     at += count;
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words) {
+  return stripped(words, [](Id) { return false; });
+}
+
+std::vector<std::uint32_t> withInterfaceNames(std::span<const std::uint32_t> words) {
+  std::set<Id> named;
+  for (std::size_t at = kHeaderWords; at < words.size();) {
+    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
+    const auto op = static_cast<spv::Op>(words[at] & 0xFFFFu);
+    if (op == spv::Op::OpFunction) break;
+    if (op >= spv::Op::OpTypeVoid && op <= spv::Op::OpTypeForwardPointer && count > 1) named.insert(words[at + 1]);
+    if (op == spv::Op::OpVariable && count > 2) named.insert(words[at + 2]);
+    at += count;
+  }
+  return stripped(words, [&](Id id) { return named.contains(id); });
 }
 
 std::vector<std::uint32_t> withEntryPoint(std::span<const std::uint32_t> words, const EntryPoint& entryPoint) {

@@ -179,6 +179,10 @@ std::vector<Id> valueOperands(const Instruction& instruction);
 // gets.
 std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words);
 
+// Returns a copy without sources and lines, and with names only of types, their members and global variables: what checks between
+// stages print.
+std::vector<std::uint32_t> withInterfaceNames(std::span<const std::uint32_t> words);
+
 // Returns a copy with one of the entry points. What only the others use stays, unreachable. Words that cannot be read as
 // instructions are copied.
 std::vector<std::uint32_t> withEntryPoint(std::span<const std::uint32_t> words, const EntryPoint& entryPoint);

@@ -71,7 +71,7 @@ LobeChoice chooseLobe(Bsdf b, float u) {
   float sum = 0.0;
   float before = 0.0;  // sum of the probabilities of the lobes before the chosen one
   for (int i = 0; i < kLobeCount; ++i) {
-    if (kLobeInScene[i] && u >= sum && (b.lobeProbability[i] > 0.0 || i == kLobeDiffuse)) {
+    if (lobeInScene(i) && u >= sum && (b.lobeProbability[i] > 0.0 || i == kLobeDiffuse)) {
       choice.lobe = i;
       choice.probability = b.lobeProbability[i];
       before = sum;

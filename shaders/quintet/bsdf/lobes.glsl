@@ -21,8 +21,11 @@ const int kLobeSheen = 4;
 const int kLobeDiffuseTransmission = 5;
 const int kLobeCount = 6;
 
-// False for lobes that no material of the scene has. The compiler then removes their code.
-const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission, kHasSheen, kHasDiffuseTransmission);
+// Bits of the lobes; 0 for those that no material of the scene has. The compiler then removes their code.
+const uint kLobesInScene = uint(kHasClearcoat) << kLobeClearcoat | 1u << kLobeSpecular | 1u << kLobeDiffuse |
+                           uint(kHasTransmission) << kLobeTransmission | uint(kHasSheen) << kLobeSheen |
+                           uint(kHasDiffuseTransmission) << kLobeDiffuseTransmission;
+bool lobeInScene(int lobe) { return (kLobesInScene & 1u << lobe) != 0u; }
 // True if all lobes have the normal z.
 const bool kLobesShareNormal = !kHasClearcoat;
 
@@ -184,7 +187,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
 vec3 baseTerms(Bsdf b, vec3 wi) { return layerTerms(b.roughness, b.filmExtra, vec3(wi.xy, abs(wi.z))); }
 
 // Returns true if `lobe` is `which`; false at once for lobes that no material of the scene has.
-bool isLobe(int lobe, int which) { return kLobeInScene[which] && lobe == which; }
+bool isLobe(int lobe, int which) { return lobeInScene(which) && lobe == which; }
 
 bool lobeIsDelta(Bsdf b, int lobe) {
   if (isLobe(lobe, kLobeClearcoat)) return b.clearcoat.delta;

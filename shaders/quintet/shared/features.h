@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of the specialization constants of features.glsl (constant_id), which requires literals. src/shader/specialization.cpp
+// sets them.
+#ifndef QUINTET_SHARED_FEATURES_H
+#define QUINTET_SHARED_FEATURES_H
+
+#define QUINTET_ID_TEXTURE_SLOTS 0
+#define QUINTET_ID_SOLID_TRANSMISSION 1
+#define QUINTET_ID_THIN_TRANSMISSION 2
+#define QUINTET_ID_PANES 3
+#define QUINTET_ID_CLEARCOAT 4
+#define QUINTET_ID_SHEEN 5
+#define QUINTET_ID_DIFFUSE_TRANSMISSION 6
+#define QUINTET_ID_ANISOTROPY 7
+#define QUINTET_ID_IRIDESCENCE 8
+#define QUINTET_ID_DISPERSION 9
+#define QUINTET_ID_SCATTERING 10
+#define QUINTET_ID_NESTED_MEDIA 11
+#define QUINTET_ID_TRIANGLE_LIGHTS 12
+#define QUINTET_ID_SOLID_LIGHTS 13
+#define QUINTET_ID_PUNCTUAL_LIGHTS 14
+#define QUINTET_ID_ENVIRONMENT 15
+#define QUINTET_ID_VERTEX_COLORS 16
+
+#endif
