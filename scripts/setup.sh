@@ -3,7 +3,7 @@
 # Installs with apt the packages of scripts/lib/packages.txt that are missing or too old. Prints the steps before it
 # runs them, asks no questions, and returns quickly if nothing is missing.
 #
-#     scripts/setup.sh [GROUP…]           install the groups: build, viewer, lab, page, test, lint, tidy, fuzz, docs (default: all)
+#     scripts/setup.sh [GROUP…]           install the groups: build, viewer, lab, page, test, farm, lint, tidy, fuzz, docs (default: all)
 #     scripts/setup.sh --plan [GROUP…]    print the steps and change nothing (exit status 1: a package cannot be
 #                                         installed)
 #

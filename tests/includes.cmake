@@ -6,7 +6,7 @@
 #   cmake -DSELF_TEST=ON -P includes.cmake   checks that violations in small generated trees are found
 cmake_minimum_required(VERSION 3.25)
 
-set(layers base io gpu spirv shader rt program program_linked scene check render job output overlay viewer lab api)
+set(layers base io gpu spirv shader rt program program_linked scene check render job output farm overlay viewer lab api)
 set(mayInclude_base base)
 set(mayInclude_io io base)
 set(mayInclude_gpu gpu base)
@@ -20,11 +20,12 @@ set(mayInclude_check check scene io ${mayInclude_program})
 set(mayInclude_render render check scene io ${mayInclude_program_linked})
 set(mayInclude_job job check ${mayInclude_render})
 set(mayInclude_output output ${mayInclude_job})
+set(mayInclude_farm farm ${mayInclude_output})
 set(mayInclude_overlay overlay ${mayInclude_output})
 set(mayInclude_viewer viewer ${mayInclude_overlay})
 set(mayInclude_lab lab ${mayInclude_output})
 set(mayInclude_api api ${mayInclude_output})
-set(mayInclude_apps lab ${mayInclude_viewer})
+set(mayInclude_apps lab farm ${mayInclude_viewer})
 
 # The layer of a path below src/: the folder, but program/linked/ is a layer of its own.
 function(layer_of PATH OUT)

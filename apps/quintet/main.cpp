@@ -20,6 +20,7 @@
 #include "cli/supervisor.h"
 #include "commands/help.h"
 #include "gpu/instance.h"
+#include "job/version.h"
 
 namespace quintet::cli {
 namespace {
@@ -31,20 +32,23 @@ int dispatch(const std::vector<std::string>& arguments) {
     return arguments.empty() ? kWrongCommandLine : 0;
   }
   if (first == "--version" || first == "version") {
-    writeFile("-", "quintet " QUINTET_VERSION "\n");
+    writeFile("-", std::string("quintet ") + job::quintetVersion() + "\n");
     return 0;
   }
-  const auto all = commands();
-  const auto found = std::ranges::find(all, first, &Command::name);
-  if (found != all.end()) return found->run(Arguments(arguments).subspan(1));
-
-  throw UsageError(unknownCommandText(first));
+  if (const NamedCommand found = commandNamed(arguments); found.command)
+    return found.command->run(Arguments(arguments).subspan(found.words));
+  if (commandWords(first).empty()) throw UsageError(unknownCommandText(first));
+  const std::string second = arguments.size() > 1 ? arguments[1] : "";
+  if (second == "--help" || second == "-h") {
+    writeFile("-", groupText(first));
+    return 0;
+  }
+  throw UsageError(unknownCommandText(first, second));
 }
 
 bool isIsolated(const std::vector<std::string>& arguments) {
-  const auto all = commands();
-  const auto found = arguments.empty() ? all.end() : std::ranges::find(all, arguments.front(), &Command::name);
-  return found != all.end() && found->isolated;
+  const NamedCommand found = commandNamed(arguments);
+  return found.command && found.command->isolated;
 }
 
 // The descriptor of a closed standard stream would be reused by the next file that is opened. It is replaced by one that is

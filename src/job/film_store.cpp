@@ -58,14 +58,19 @@ StoredFilm readStoredFilm(const std::filesystem::path& path, std::size_t maxMemo
 StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path, MemoryBudget& budget) {
   StoredFilm stored;
   stored.file = render::decodeFilm(bytes, path, budget);
+  stored.provenance = provenanceOf(stored.file, path);
+  return stored;
+}
+
+Provenance provenanceOf(const render::FilmFile& file, const std::filesystem::path& path) {
+  Provenance provenance;
   try {
-    stored.provenance = fromFacts(stored.file.identity, stored.file.notes);
+    provenance = fromFacts(file.identity, file.notes);
   } catch (const UsageError& error) {
     throw FileError(path, "header", error.what());
   }
-  if (stored.provenance.region != stored.file.film.region)
-    throw FileError(path, "header", "region differs from that of the samples");
-  return stored;
+  if (provenance.region != file.film.region) throw FileError(path, "header", "region differs from that of the samples");
+  return provenance;
 }
 
 void requireSameIdentity(const FilmFacts& found, const FilmFacts& expected, const std::filesystem::path& file,

@@ -27,6 +27,9 @@ StoredFilm readStoredFilm(const std::filesystem::path& path, std::size_t maxMemo
 // `path`: for messages only.
 StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path, MemoryBudget&);
 
+// The facts of a film, whose arrays are not used. Throws FileError that names `path` for invalid facts.
+Provenance provenanceOf(const render::FilmFile& file, const std::filesystem::path& path);
+
 // Throws FileError "belongs to `owner` (seed 3, expected 7); CONSEQUENCE" unless the identities agree. `owner`: "a
 // different render"; an empty consequence is omitted.
 void requireSameIdentity(const render::FilmFacts& found, const render::FilmFacts& expected,

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "job/version.h"
 #include "shader/include_resolver.h"
 #include "shader/library.h"
 
@@ -71,7 +72,7 @@ Provenance identityOf(const ResolvedJob& job, const render::Renderer& renderer, 
                       uvec2 size) {
   const RenderRequest& request = job.request;
   Provenance p;
-  p.version = QUINTET_VERSION;
+  p.version = quintetVersion();
   p.program = job.program.name;
   p.libraryHash = shader::libraryHash().hex();
   p.parameterValues = parameterFacts(job);

@@ -2,7 +2,9 @@
 #include "job/merge.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -16,6 +18,7 @@
 #include "base/plural.h"
 #include "job/film_store.h"
 #include "job/sampling_schedule.h"
+#include "render/film/film_reader.h"
 
 namespace quintet::job {
 namespace {
@@ -60,61 +63,72 @@ class Merger {
 
   void add(const std::filesystem::path& path) {
     observer_.stage("reading " + path.string());
-    StoredFilm stored = readStoredFilm(path, maxMemory_);
-    FilmFile& part = stored.file;
-    const Provenance& provenance = stored.provenance;
-    parts_.push_back({path, part.film.counts.ranges});
-    if (parts_.size() == 1) {
-      whole_ = std::move(part);
+    render::FilmReader reader(path);
+    const FilmFile& part = reader.header();
+    const Provenance provenance = provenanceOf(part, path);
+    const std::vector<SampleRange> ranges = part.film.counts.ranges;
+    const std::uint64_t firstSample =
+        ranges.empty() ? std::numeric_limits<std::uint64_t>::max() : std::uint64_t{ranges.front().begin};
+    if (first_.empty()) {
+      whole_ = reader.read(maxMemory_);
       provenance_ = provenance;
+      first_ = path;
+      firstSample_ = firstSample;
+      addRanges(path, ranges);
       return;
     }
-    requireSameIdentity(part.identity, whole_.identity, path, fmt::format("a different render than {}", first()), "",
-                        Remedy::none);
+    requireSameIdentity(part.identity, whole_.identity, path,
+                        fmt::format("a different render than {}", first_.string()), "", Remedy::none);
     if (provenance.adaptive)
       throw FileError(path,
                       fmt::format("is a film of an adaptive render, like {}: such a render has no parts, because all "
                                   "samples so far decide where the next ones are taken",
-                                  first()));
-    rejectOverlap();
-    if (!render::sameArrays(whole_.film, part.film))
-      throw FileError(path, fmt::format("its outputs differ from those of {}", first()));
+                                  first_.string()));
+    addRanges(path, ranges);
+    if (!reader.hasArraysOf(whole_.film))
+      throw FileError(path, fmt::format("its outputs differ from those of {}", first_.string()));
     try {
-      render::mergeFilm(whole_.film, part.film);
-      join(provenance);
+      reader.addTo(whole_.film);
+      join(path, provenance, firstSample < firstSample_);
     } catch (const UsageError& error) {
       throw FileError(path, error.what());
     }
+    firstSample_ = std::min(firstSample_, firstSample);
   }
 
   FilmFile& film() { return whole_; }
   Provenance& provenance() { return provenance_; }
 
  private:
-  struct Part {
+  struct Owner {
+    std::uint32_t end = 0;
     std::filesystem::path path;
-    std::vector<SampleRange> ranges;
   };
-  std::string first() const { return parts_.front().path.string(); }
-  std::string last() const { return parts_.back().path.string(); }
 
-  void rejectOverlap() const {
-    for (std::size_t i = 0; i + 1 < parts_.size(); ++i)
-      for (const SampleRange& a : parts_[i].ranges)
-        for (const SampleRange& b : parts_.back().ranges)
-          if (a.begin < b.end && b.begin < a.end)
-            throw FileError(
-                parts_.back().path,
-                fmt::format("shares {} with {}", rangesText({{std::max(a.begin, b.begin), std::min(a.end, b.end)}}),
-                            parts_[i].path.string()));
+  // Throws FileError if an earlier part has some of the samples.
+  void addRanges(const std::filesystem::path& path, const std::vector<SampleRange>& ranges) {
+    for (const SampleRange& range : ranges) {
+      auto other = owners_.upper_bound(range.begin);  // the first that begins later, or else the last one before
+      if (other != owners_.begin() && std::prev(other)->second.end > range.begin) --other;
+      if (other != owners_.end() && other->first < range.end)
+        throw FileError(
+            path,
+            fmt::format("shares {} with {}",
+                        rangesText({{std::max(other->first, range.begin), std::min(other->second.end, range.end)}}),
+                        other->second.path.string()));
+      owners_[range.begin] = {range.end, path};
+    }
   }
 
-  void join(const Provenance& part) {
-    joinList("device", provenance_.device, part.device);
-    joinList("driver", provenance_.driver, part.driver);
+  // `isFirst`: the part has the first samples so far.
+  void join(const std::filesystem::path& path, const Provenance& part, bool isFirst) {
+    joinList(path, "device", provenance_.device, part.device);
+    joinList(path, "driver", provenance_.driver, part.driver);
     // Display settings follow the part with the first samples, so that the order of the parts does not matter.
-    const bool isFirst = std::ranges::min(parts_, {}, firstSample).path == parts_.back().path;
-    for (const char* name : {"exposure", "tone map", "all outputs", "target error"}) takeFirst(name, isFirst, part);
+    for (const char* name : {"exposure", "tone map", "all outputs", "target error"})
+      takeFirst(path, name, isFirst, part);
+    provenance_.deviceCount = std::max(provenance_.deviceCount, part.deviceCount);  // an unset one is the smallest
+    if (provenance_.farmPlan != part.farmPlan) provenance_.farmPlan.clear();
     for (const auto member : {&Provenance::instanceNames, &Provenance::materialNames})
       if ((provenance_.*member).empty()) provenance_.*member = part.*member;
     for (const auto member : {&Provenance::worldToCamera, &Provenance::worldToNdc})
@@ -123,37 +137,35 @@ class Merger {
     provenance_.seconds += part.seconds;
   }
 
-  void joinList(const char* name, std::string& whole, const std::string& part) {
+  void joinList(const std::filesystem::path& path, const char* name, std::string& whole, const std::string& part) {
     const std::vector<std::string> known = splitList(whole);
     std::vector<std::string> joined = known;
     for (const std::string& entry : splitList(part))
       if (std::ranges::find(joined, entry) == joined.end()) joined.push_back(entry);
     if (joined == known) return;
-    observer_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, part, whole));
+    observer_.note(fmt::format("{}: {} {}, other parts: {}", path.string(), name, part, whole));
     whole = fmt::format("{}", fmt::join(joined, kDeviceSeparator));
   }
 
-  void takeFirst(std::string_view name, bool isFirst, const Provenance& part) {
+  void takeFirst(const std::filesystem::path& path, std::string_view name, bool isFirst, const Provenance& part) {
     const auto field = std::ranges::find_if(provenanceFields(), [&](const ProvenanceField& f) {
       return f.role == ProvenanceField::Role::note && f.name == name;
     });
     const std::string ours = toText(field->get(provenance_)), theirs = toText(field->get(part));
     if (ours == theirs) return;
     const auto shown = [](const std::string& text) { return text.empty() ? "none" : text; };
-    observer_.note(fmt::format("{}: {} {}, other parts: {}; using {}, the setting of the first samples", last(), name,
-                               shown(theirs), shown(ours), shown(isFirst ? theirs : ours)));
+    observer_.note(fmt::format("{}: {} {}, other parts: {}; using {}, the setting of the first samples", path.string(),
+                               name, shown(theirs), shown(ours), shown(isFirst ? theirs : ours)));
     if (isFirst) field->set(provenance_, theirs);
-  }
-
-  static std::uint64_t firstSample(const Part& part) {
-    return part.ranges.empty() ? std::numeric_limits<std::uint64_t>::max() : part.ranges.front().begin;
   }
 
   Observer& observer_;
   const std::size_t maxMemory_;
   FilmFile whole_;
   Provenance provenance_;
-  std::vector<Part> parts_;
+  std::filesystem::path first_;            // part; empty before it
+  std::uint64_t firstSample_ = 0;          // of all parts so far
+  std::map<std::uint32_t, Owner> owners_;  // ranges of samples by their begin
 };
 
 // Samples that the render was to have and that the film lacks.

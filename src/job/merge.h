@@ -12,7 +12,7 @@
 
 namespace quintet::job {
 
-// Reads the films one after the other, so that two of them are in memory at a time. Facts in which the parts may differ
+// Adds the films one after the other, block by block, so that only their sum is in memory, for any number of them. Facts in which the parts may differ
 // (device, exposure, …) are joined or taken from the part with the first samples, and reported as notes. Throws FileError
 // for a part that cannot be read, belongs to a different render, or shares samples with another part; Error if there are
 // no samples at all. `commandLine` becomes that of the result, for metadata; empty keeps that of the first part.

@@ -11,6 +11,7 @@
 #include "job/device_limits.h"
 #include "job/explanation_builder.h"
 #include "job/runnable_program.h"
+#include "job/version.h"
 
 namespace quintet::job {
 namespace {
@@ -177,7 +178,7 @@ PixelExplanation PixelExplainer::facts() const {
   result.camera = image_.camera.description;
   result.device = engine_.context().info().name;
   result.driver = engine_.context().info().driver;
-  result.version = QUINTET_VERSION;
+  result.version = quintetVersion();
   result.size = image_.size;
   result.frames = job.accumulatesFrames();
   result.plannedSamples =

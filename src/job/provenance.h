@@ -71,6 +71,9 @@ struct Provenance {
   std::vector<std::string> materialNames;
   std::optional<mat4> worldToCamera;  // render::CameraMatrices; unset for programs with cameras of their own
   std::optional<mat4> worldToNdc;
+  // Of the process, if it used several; the largest number of the parts that were merged.
+  std::optional<std::uint64_t> deviceCount;
+  std::string farmPlan;  // id of the plan that this render is a part of; empty if it is none
 
   // Result: known when rendering has ended; films have the counts themselves.
   std::string output;         // of the program, shown by an image
@@ -81,7 +84,6 @@ struct Provenance {
   std::uint64_t notFinitePixels = 0;                 // of all stored outputs together
   std::optional<PixelPosition> firstNotFinitePixel;  // of the first output that has one
   std::optional<std::uint64_t> frame;                // of an animation
-  std::optional<std::uint64_t> deviceCount;          // of the process, if it used several
   bool interrupted = false;
   std::optional<double> error;      // stated relative error of the image; unset if unknown
   std::optional<double> tileError;  // 95 % of the tiles have a smaller one

@@ -440,6 +440,7 @@ Provenance RenderJob::makeProvenance() const {
   p.sceneHash = isStart ? scene_->hash : fmt::format("{}, frame {}", scene_->hash, frame_);
   p.environmentHash = scene_->environmentHash;
   p.commandLine = request.commandLine;
+  p.farmPlan = request.farmPlan;
   p.scene = job_.scene.path();
   p.environment = scene_->environment;
   p.camera = scene_->cameraDescription;

@@ -144,6 +144,7 @@ struct RenderRequest {
   std::optional<PrintRequest> print;
   OutputNotes outputNotes;
   std::string commandLine;  // for metadata; may be empty
+  std::string farmPlan;     // id of the plan that the render is a part of, for films and metadata; may be empty
 };
 
 }  // namespace quintet::job

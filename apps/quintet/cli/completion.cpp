@@ -60,7 +60,7 @@ _quintet_files() {
 }
 
 _quintet() {
-  local current=${COMP_WORDS[COMP_CWORD]} previous='' command='' options='' assigned='' end='' i
+  local current=${COMP_WORDS[COMP_CWORD]} previous='' command='' options='' assigned='' end='' i groups='GROUPS'
   ((COMP_CWORD > 0)) && previous=${COMP_WORDS[COMP_CWORD - 1]}
   COMPREPLY=()
   # bash splits "--name=value" at the sign.
@@ -70,6 +70,7 @@ _quintet() {
     previous=${COMP_WORDS[COMP_CWORD - 2]} assigned=yes
   fi
   ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
+  ((COMP_CWORD > 2)) && [[ " $groups " == *" $command "* ]] && command+=-${COMP_WORDS[2]}
   for ((i = 2; i < COMP_CWORD; ++i)); do
     [[ ${COMP_WORDS[i]} == -- ]] && end=yes
   done
@@ -88,7 +89,7 @@ std::string bashCandidates(const Candidates& candidates) {
 }
 
 std::string bashCase(const OptionTable& table) {
-  std::string text = fmt::format("    {})\n", table.command());
+  std::string text = fmt::format("    {})\n", commandKey(table.command()));
   std::vector<std::string> names;
   std::string values;
   for (const Option& option : table.options()) {
@@ -141,7 +142,7 @@ std::string zshOption(const Option& option) {
 }
 
 std::string zshFunction(const OptionTable& table) {
-  std::string text = fmt::format("_quintet_{}() {{\n  _arguments -s -S \\\n", table.command());
+  std::string text = fmt::format("_quintet_{}() {{\n  _arguments -s -S \\\n", commandKey(table.command()));
   for (const Option& option : table.options()) text += zshOption(option);
   for (const Option& argument : table.arguments())
     text += fmt::format("    '{}:{}:{}' \\\n",
@@ -167,7 +168,10 @@ std::string fishCandidates(const Candidates& candidates) {
 }
 
 std::string fishOption(const OptionTable& table, const Option& option) {
-  std::string text = fmt::format("complete -c quintet -n '__fish_seen_subcommand_from {}'", table.command());
+  std::string words = table.command();  // "farm plan": both words are on the line
+  if (const std::size_t space = words.find(' '); space != words.npos)
+    words.replace(space, 1, "; and __fish_seen_subcommand_from ");
+  std::string text = fmt::format("complete -c quintet -n '__fish_seen_subcommand_from {}'", words);
   if (!option.isArgument())
     for (const std::string& name : option.nameList())
       text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
@@ -182,11 +186,12 @@ std::string fishOption(const OptionTable& table, const Option& option) {
 
 std::string bashCompletion() {
   std::string text(kBashStart);
-  std::vector<std::string> names;
-  for (const Command& command : commands()) {
-    text += bashCase(command.options());
-    names.emplace_back(command.name);
-  }
+  const std::vector<std::string> names = commandWords(), groups = commandGroups();
+  text.replace(text.find("GROUPS"), 6, fmt::format("{}", fmt::join(groups, " ")));
+  for (const Command& command : commands()) text += bashCase(command.options());
+  for (const std::string& group : groups)
+    text += fmt::format("    {})\n      _quintet_words '{}' \"$current\"\n      ;;\n", group,
+                        fmt::join(commandWords(group), " "));
   return text + fmt::format(
                     "    *) options='--help --version' ;;\n  esac\n"
                     "  if [[ -z $end && $current == -* ]]; then _quintet_words \"$options\" \"$current\"; fi\n"
@@ -202,12 +207,22 @@ std::string zshCompletion() {
   std::string list;
   for (const Command& command : commands()) {
     text += zshFunction(command.options());
-    list += fmt::format("    '{}:{}'\n", command.name, inQuotes(command.summary));
+    if (command.name.find(' ') == command.name.npos)
+      list += fmt::format("    '{}:{}'\n", command.name, inQuotes(command.summary));
+  }
+  std::string groups;
+  for (const std::string& group : commandGroups()) {
+    list += fmt::format("    '{}:{}'\n", group, "commands of a group");
+    groups += fmt::format(
+        "  if [[ $command == {0} ]]; then\n    if ((CURRENT == 2)); then\n      compadd -- {1}\n      return\n    fi\n"
+        "    command={0}-$words[2]\n    shift words\n    ((CURRENT--))\n  fi\n",
+        group, fmt::join(commandWords(group), " "));
   }
   return text + "_quintet() {\n  local -a names\n  names=(\n" + list +
          "  )\n"
          "  if ((CURRENT == 2)); then\n    _describe command names\n    return\n  fi\n"
-         "  local command=$words[2]\n  shift words\n  ((CURRENT--))\n"
+         "  local command=$words[2]\n  shift words\n  ((CURRENT--))\n" +
+         groups +
          "  ((${+functions[_quintet_$command]})) && _quintet_$command\n}\n\n"
          "if [[ $funcstack[1] == _quintet ]]; then _quintet \"$@\"; else compdef _quintet quintet; fi\n";
 }
@@ -219,8 +234,14 @@ std::string fishCompletion() {
       "complete -c quintet -n __fish_use_subcommand -l help -s h -d 'Print the commands'\n"
       "complete -c quintet -n __fish_use_subcommand -l version -d 'Print the version'\n";
   for (const Command& command : commands())
-    text += fmt::format("complete -c quintet -n __fish_use_subcommand -a {} -d {}\n", command.name,
-                        fishText(command.summary));
+    if (const std::size_t space = command.name.find(' '); space == command.name.npos)
+      text += fmt::format("complete -c quintet -n __fish_use_subcommand -a {} -d {}\n", command.name,
+                          fishText(command.summary));
+    else
+      text += fmt::format("complete -c quintet -n '__fish_seen_subcommand_from {}' -a {} -d {}\n",
+                          command.name.substr(0, space), command.name.substr(space + 1), fishText(command.summary));
+  for (const std::string& group : commandGroups())
+    text += fmt::format("complete -c quintet -n __fish_use_subcommand -a {}\n", group);
   for (const Command& command : commands()) {
     const OptionTable table = command.options();
     for (const Option& option : table.options()) text += fishOption(table, option);

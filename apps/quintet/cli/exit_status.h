@@ -10,6 +10,7 @@ constexpr int kRuntimeError = 1;
 constexpr int kWrongCommandLine = 2;
 constexpr int kTargetNotReached = 3;
 constexpr int kCrashed = 4;
+constexpr int kWrongVersion = 5;
 
 }  // namespace quintet::cli
 #endif

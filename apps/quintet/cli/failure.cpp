@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "check/diagnostic_text.h"
 #include "cli/console.h"
+#include "farm/plan.h"
 #include "output/report.h"
 
 namespace quintet::cli {
@@ -42,8 +43,13 @@ int printFailure(std::string message, int status) {
   return status;
 }
 
+int failureStatus(const std::exception& error) {
+  if (dynamic_cast<const UsageError*>(&error)) return kWrongCommandLine;
+  return dynamic_cast<const farm::VersionError*>(&error) ? kWrongVersion : kRuntimeError;
+}
+
 int reportFailure(const std::exception& error, FailureJson json, const std::string& hint) {
-  const int status = dynamic_cast<const UsageError*>(&error) ? kWrongCommandLine : kRuntimeError;
+  const int status = failureStatus(error);
   const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
   std::string message = memory ? "out of memory" : error.what();
   if (const auto* ours = dynamic_cast<const Error*>(&error)) message += optionHint(ours->remedy());

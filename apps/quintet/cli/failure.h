@@ -28,6 +28,8 @@ int printFailure(std::string message, int status);
 // Prints the error with the option that helps, also as JSON. `hint`: appended to the message, for example "; write 'x'".
 // Returns the exit status.
 int reportFailure(const std::exception& error, FailureJson json, const std::string& hint = {});
+// The status of a command that this error ends.
+int failureStatus(const std::exception& error);
 
 }  // namespace quintet::cli
 #endif

@@ -71,6 +71,7 @@ constexpr Row kStatuses[] = {
     {"2", "Wrong command line: an unknown option or program, or a value out of range."},
     {"3", "render or run wrote the image, but --spp or --time ended the render before it reached --until-error."},
     {"4", "The driver or Quintet crashed."},
+    {"5", "farm run or farm merge is a different version of Quintet than the one that made the plan."},
     {"130, 143", "Ended by SIGINT (Ctrl-C) or SIGTERM."},
     {"137", "The process was killed (SIGKILL), possibly because memory ran out."},
 };
@@ -94,7 +95,7 @@ std::string rows(std::span<const Row> all) {
 }  // namespace
 
 std::string manualPage(const OptionTable& table) {
-  const std::string page = "quintet-" + table.command();
+  const std::string page = "quintet-" + commandKey(table.command());
   const auto all = commands();
   const auto command = std::ranges::find(all, table.command(), &Command::name);
   std::string text = header(page, std::string(command == all.end() ? table.description() : command->summary));
@@ -115,10 +116,11 @@ std::string mainManualPage() {
   text += ".SH SYNOPSIS\n\\fBquintet\\fR \\fICOMMAND\\fR [OPTIONS]\n";
   text += ".SH DESCRIPTION\nFive shaders in, image out. Each command has a page of its own.\n.SH COMMANDS\n";
   for (const Command& command : commands())
-    text += fmt::format(".TP\n.BR quintet\\-{} (1)\n{}\n", command.name, roff(command.summary));
+    text += fmt::format(".TP\n.BR quintet\\-{} (1)\n{}\n", roff(commandKey(command.name)), roff(command.summary));
   text += ".SH EXIT STATUS\n" + rows(kStatuses) + ".SH ENVIRONMENT\n" + rows(kVariables) + ".SH SEE ALSO\n";
   std::vector<std::string> pages;
-  for (const Command& command : commands()) pages.push_back(fmt::format(".BR quintet\\-{} (1)", command.name));
+  for (const Command& command : commands())
+    pages.push_back(fmt::format(".BR quintet\\-{} (1)", roff(commandKey(command.name))));
   return text + fmt::format("{}\n", fmt::join(pages, ",\n"));
 }
 

@@ -12,6 +12,15 @@ namespace {
 
 constexpr const char* kOptions = "Options";
 
+// The option with this name; null if there is none.
+const Option* findOption(const std::vector<Option>& options, const std::string& name) {
+  const auto found = std::ranges::find_if(options, [&](const Option& option) {
+    const std::vector<std::string> names = option.nameList();
+    return std::ranges::find(names, name) != names.end();
+  });
+  return found == options.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 bool Option::isList() const {
@@ -72,6 +81,27 @@ OptionTable OptionTable::withoutTargets() && {
   for (OptionGroup& group : groups_) std::ranges::for_each(group.options, clear);
   help_ = nullptr;
   return std::move(*this);
+}
+
+std::vector<std::string> selectArguments(const OptionTable& table, const OptionTable& wanted,
+                                         std::span<const std::string> arguments) {
+  const std::vector<Option> all = table.options(), chosen = wanted.options();
+  std::vector<std::string> selected;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    if (argument == "--") break;
+    if (argument.size() < 2 || argument[0] != '-') continue;
+    const bool isLong = argument[1] == '-';
+    const std::string name = isLong ? argument.substr(0, argument.find('=')) : argument.substr(0, 2);
+    const Option* option = findOption(all, name);
+    if (!option) continue;
+    // The value is in the argument, or is the next one.
+    const bool separate = !option->isFlag() && option->withoutValue.empty() && argument == name;
+    const bool isChosen = findOption(chosen, name) != nullptr;
+    if (isChosen) selected.push_back(argument);
+    if (separate && ++i < arguments.size() && isChosen) selected.push_back(arguments[i]);
+  }
+  return selected;
 }
 
 }  // namespace quintet::cli

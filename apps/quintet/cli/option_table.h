@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -87,6 +88,11 @@ class OptionTable {
   std::vector<Example> examples_;
   bool* help_ = nullptr;
 };
+
+// Those of the arguments of a command line that are options of `wanted`, with their values, in their order. `table` has all
+// options of the command line, which it can parse.
+std::vector<std::string> selectArguments(const OptionTable& table, const OptionTable& wanted,
+                                         std::span<const std::string> arguments);
 
 }  // namespace quintet::cli
 #endif

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "cli/candidates.h"
 #include "cli/values.h"
+#include "output/file_names.h"
 #include "program/heat.h"
 #include "render/film/film_file.h"
 
@@ -288,7 +289,7 @@ void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& option
                     {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
 }
 
-void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
   table.add("Run",
             {{.names = "--device",
               .value = "NAMES",
@@ -301,6 +302,10 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
               .help = "Allow different kinds of devices in --device, which can differ in the last bit of a sample",
               .target = &options.mixedDevices},
              {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
+}
+
+void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+  declareDevices(table, texts, options, timeoutHelp);
   table.add(
       "Run",
       {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
@@ -311,6 +316,18 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
         .target = &options.console.preview,
         .withoutValue = "auto",
         .candidates = {.names = previewNames()}}});
+}
+
+void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  declareImage(table, texts, options);
+  declareFrames(table, texts, options);
+  declareFrame(table, texts, "Render");
+  declareExr(table, texts);
+  declareQuality(table, texts, options);
+  declareView(table, texts, options);
+  declareAnimation(table, texts, options);
+  declareProgramName(table, options);
+  declareProgram(table, options);
 }
 
 void declarePrint(OptionTable& table, RenderTexts& texts) {
@@ -463,6 +480,21 @@ void convert(const RenderTexts& texts, RenderOptions& options) {
   convertCheckpoints(texts, options);
   if (output::fileKind(options.output.file) == output::FileKind::film) request.film = options.output.file;
   request.overwriteFilm = request.checkpoint.force;
+}
+
+void convertRendering(const RenderTexts& texts, RenderOptions& options) {
+  options.request.scene = texts.scene;
+  chooseVideo(options);
+  // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
+  const bool isPattern = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
+                         output::fileKind(options.output.file) != output::FileKind::film;
+  options.output.everyFrame = options.output.everyFrame || isPattern;
+  convert(texts, options);
+  convertFrames(texts, options);
+  // Frames are written, not only the last one, unless a single file is named.
+  job::FrameRequest& frames = options.request.frames;
+  frames.every = options.output.everyFrame && (frames.count || frames.first);
+  if (options.request.limits.samples) frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
 }
 
 void checkStandardStreams(const RenderOptions& options) {

@@ -3,6 +3,7 @@
 #ifndef QUINTET_CLI_RENDER_OPTIONS_H
 #define QUINTET_CLI_RENDER_OPTIONS_H
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,8 +11,14 @@
 #include "cli/console.h"
 #include "cli/option_table.h"
 #include "job/request.h"
+#include "job/result.h"
+#include "output/frame_files.h"
 #include "output/plan.h"
 #include "output/video/video.h"
+
+namespace quintet::job {
+class RenderJob;
+}
 
 namespace quintet::cli {
 
@@ -27,6 +34,10 @@ struct RenderOptions {
   ConsoleOptions console;
   bool programHelp = false;  // print the program's parameters
   bool layerList = false;    // print the program's layers
+  // Called before the first sample; an exception ends the render.
+  std::function<void(const job::RenderJob&)> prepared;
+  // Called when all outputs are written: with the frames of an animation, else an empty list.
+  std::function<void(const job::RenderResult&, const std::vector<output::FrameFiles>&)> written;
 };
 
 // Option values as text.
@@ -71,6 +82,10 @@ void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& option
                    const std::string& timeoutHelp = kLaunchLimitHelp);
 // Device, messages and preview.
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+// The part of declareProcess() that decides which devices render: also a list of them.
+void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+// What an image of a scene looks like: every option of `render` but its files, devices, messages and checkpoints.
+void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declarePrint(OptionTable& table, RenderTexts& texts);  // what the program prints
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms = false);
@@ -81,6 +96,8 @@ void convert(const RenderTexts& texts, RenderOptions& options);
 void chooseVideo(RenderOptions& options);
 // --frame, --frames, --at: which frames the request is for, and whether each is written. Throws UsageError.
 void convertFrames(const RenderTexts& texts, RenderOptions& options);
+// All of this for a render whose scene and output file are in `texts.scene` and `options.output.file`. Throws UsageError.
+void convertRendering(const RenderTexts& texts, RenderOptions& options);
 // The part of convert() that `merge` needs.
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output);
 

@@ -11,6 +11,10 @@ std::span<const Command> commands() {
   static constexpr std::array kCommands{
       Command{"render", "render an image of a scene", renderCommand, renderOptions, true},
       Command{"merge", "join parts of a render", mergeCommand, mergeOptions},
+      Command{"farm plan", "split a render for many machines", farmPlanCommand, farmPlanOptions},
+      Command{"farm run", "render a part of a plan", farmRunCommand, farmRunOptions, true},
+      Command{"farm merge", "verify and join the parts of a plan", farmMergeCommand, farmMergeOptions},
+      Command{"farm status", "show which parts of a plan are done", farmStatusCommand, farmStatusOptions},
       Command{"run", "run a program: your own or a built-in one", runCommand, runOptions, true},
       Command{"view", "show a scene in a window, or run a scripted session", viewCommand, viewOptions, true},
       Command{"lab", "write shaders in a browser beside a live image", labCommand, labOptions},

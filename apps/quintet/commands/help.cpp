@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -21,7 +22,7 @@ namespace quintet::cli {
 namespace {
 
 struct Options {
-  std::optional<std::string> command;
+  std::vector<std::string> command;  // one word, or two
   bool man = false;
   bool list = false;
   std::optional<std::string> completion;
@@ -29,10 +30,10 @@ struct Options {
 
 OptionTable declare(Options& options) {
   std::vector<std::string> names;
-  for (const Command& command : commands()) names.emplace_back(command.name);
+  for (const Command& command : commands()) names.push_back(commandKey(command.name));
   OptionTable table("help", "Prints the help of a command, or the list of commands.");
   table.add({{.names = "COMMAND",
-              .help = "Name of a command; without it, the list of all",
+              .help = "Name of a command, also as one word (farm-plan); without it, the list of all",
               .target = &options.command,
               .candidates = {.names = names}}});
   table.add("For packages",
@@ -51,11 +52,11 @@ OptionTable declare(Options& options) {
   return table;
 }
 
-OptionTable tableOf(const std::string& name) {
-  const auto all = commands();
-  const auto found = std::ranges::find(all, name, &Command::name);
-  if (found == all.end()) throw UsageError(unknownCommandText(name));
-  return found->options();
+OptionTable tableOf(const std::vector<std::string>& words) {
+  const std::string key = fmt::format("{}", fmt::join(words, "-"));
+  for (const Command& command : commands())
+    if (commandKey(command.name) == key) return command.options();
+  throw UsageError(unknownCommandText(words.front(), words.size() > 1 ? words[1] : ""));
 }
 
 std::string completionFor(const std::string& shell) {
@@ -68,17 +69,32 @@ std::string completionFor(const std::string& shell) {
 
 std::string commandNames() {
   std::string text;
-  for (const Command& command : commands()) text += fmt::format("{}\n", command.name);
+  for (const Command& command : commands()) text += fmt::format("{}\n", commandKey(command.name));
   return text;
 }
 
 }  // namespace
 
-std::string unknownCommandText(std::string_view name) {
-  std::vector<std::string> names{"--help", "--version"};
-  for (const Command& command : commands()) names.emplace_back(command.name);
+std::string unknownCommandText(std::string_view name, std::string_view second) {
+  if (const std::vector<std::string> group = commandWords(name); !group.empty())
+    return fmt::format(
+        "{}; commands of '{}': {}",
+        second.empty() ? fmt::format("the command after '{}' is missing", name)
+                       : fmt::format("unknown command '{} {}'{}", name, printable(second), suggestion(second, group)),
+        name, fmt::join(group, ", "));
+  std::vector<std::string> names = commandWords();
+  names.insert(names.begin(), {"--help", "--version"});
   return fmt::format("unknown {} '{}'{}; 'quintet --help' lists the commands",
                      name.starts_with('-') ? "option" : "command", printable(name), suggestion(name, names));
+}
+
+std::string groupText(std::string_view group) {
+  const std::size_t width = helpWidth();
+  std::string text = fmt::format("Usage: quintet {} COMMAND [OPTIONS]\n\nCommands:\n", group);
+  for (const Command& command : commands())
+    if (command.name.starts_with(std::string(group) + " "))
+      text += twoColumns(fmt::format("  {}", command.name), command.summary, 16, width);
+  return text + fmt::format("\n  quintet {} COMMAND --help      options and examples of a command\n", group);
 }
 
 std::string overviewText() {
@@ -109,16 +125,21 @@ int helpCommand(Arguments arguments) {
   if (!parse(declare(options), arguments)) return 0;
   if (options.man + options.list + options.completion.has_value() > 1)
     throw UsageError("--man, --completion and --commands exclude each other");
-  if (options.command && (options.list || options.completion))
-    throw UsageError(fmt::format("unexpected argument '{}'; see 'quintet help --help'", printable(*options.command)));
+  const bool named = !options.command.empty();
+  if ((named && (options.list || options.completion)) || options.command.size() > 2)
+    throw UsageError(
+        fmt::format("unexpected argument '{}'; see 'quintet help --help'", printable(options.command.back())));
+  const bool isGroup = options.command.size() == 1 && !commandWords(options.command[0]).empty();
   if (options.completion)
     writeFile("-", completionFor(*options.completion));
   else if (options.list)
     writeFile("-", commandNames());
   else if (options.man)
-    writeFile("-", options.command ? manualPage(tableOf(*options.command)) : mainManualPage());
+    writeFile("-", named ? manualPage(tableOf(options.command)) : mainManualPage());
   else
-    writeFile("-", options.command ? helpText(tableOf(*options.command), helpWidth()) : overviewText());
+    writeFile("-", isGroup ? groupText(options.command[0])
+                   : named ? helpText(tableOf(options.command), helpWidth())
+                           : overviewText());
   return 0;
 }
 

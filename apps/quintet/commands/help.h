@@ -11,7 +11,11 @@ namespace quintet::cli {
 std::string overviewText();
 
 // "unknown command 'rendr' (did you mean 'render'?); …"
-std::string unknownCommandText(std::string_view name);
+// `second`: the word after the name of a group of commands, if there is one.
+std::string unknownCommandText(std::string_view name, std::string_view second = {});
+
+// `quintet farm --help`: the commands of a group.
+std::string groupText(std::string_view group);
 
 }  // namespace quintet::cli
 #endif

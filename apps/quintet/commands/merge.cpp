@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet merge`: parts of a render become the image, or the film, that one render would have written.
-#include "job/merge.h"
+#include "commands/merge.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "cli/render_options.h"
 #include "cli/values.h"
 #include "commands/render.h"
+#include "job/merge.h"
 #include "output/plan.h"
 #include "output/report.h"
 #include "output/write.h"
@@ -95,19 +97,26 @@ int mergeCommand(Arguments arguments) {
   if (!options) return 0;
   Console console(options->console);
   job::RenderResult result = job::merge(options->parts, console, commandLine("merge", arguments), options->maxMemory);
-  const output::OutputPlan plan = output::planOutputs(options->output, result, options->parts.front());
+  return writeMerged(std::move(result),
+                     {options->output, options->parts.front(), options->partial, options->force, options->console.json,
+                      options->maxMemory},
+                     console, clock);
+}
+
+int writeMerged(job::RenderResult result, const MergeOutput& options, Console& console, const Stopwatch& clock) {
+  const output::OutputPlan plan = output::planOutputs(options.output, result, options.firstPart);
   if (const std::string missing = job::missingText(result); !missing.empty()) {
-    if (plan.kind != output::FileKind::film && !options->partial)
+    if (plan.kind != output::FileKind::film && !options.partial)
       throw Error(missing + "; use --partial to write the image anyway");
     console.note(missing);
   }
-  if (const std::string text = output::ignoredDisplayText(options->output); !text.empty()) console.note(text);
-  if (!options->force) output::checkFilmLoss(plan, result, options->maxMemory);
+  if (const std::string text = output::ignoredDisplayText(options.output); !text.empty()) console.note(text);
+  if (!options.force) output::checkFilmLoss(plan, result, options.maxMemory);
   output::storeNotes(plan, result);
   const std::vector<output::WrittenFile> files = output::writeOutputs(plan, result, console);
   addWarnings(result, console);
   console.clear();
-  if (options->console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
+  if (options.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
   console.note(output::resultSummary(result, files));
   return 0;
 }

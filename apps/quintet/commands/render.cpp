@@ -48,15 +48,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
             "SCENE.png in the current folder)",
         .target = &texts.output,
         .candidates = {.extensions = {"png", "exr", "hdr", "qfilm", "mp4", "webm", "gif"}}}});
-  declareImage(table, texts, options);
-  declareFrames(table, texts, options);
-  declareFrame(table, texts, "Render");
-  declareExr(table, texts);
-  declareQuality(table, texts, options);
-  declareView(table, texts, options);
-  declareAnimation(table, texts, options);
-  declareProgramName(table, options);
-  declareProgram(table, options);
+  declareRendering(table, texts, options);
   table.add(
       "Program",
       {{.names = "--help-program", .help = "Print the program's parameters and exit", .target = &options.programHelp}});
@@ -94,23 +86,11 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.programHelp || options.layerList) return options;
   if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
-  options.request.scene = texts.scene;
-  options.output.file = texts.output.empty() ? options.request.scene.filename().replace_extension(".png")
+  options.output.file = texts.output.empty() ? std::filesystem::path(texts.scene).filename().replace_extension(".png")
                                              : std::filesystem::path(texts.output);
-  chooseVideo(options);
-  // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
-  const bool isPattern = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
-                         output::fileKind(options.output.file) != output::FileKind::film;
-  options.output.everyFrame = options.output.everyFrame || isPattern;
   options.request.commandLine = commandLine("render", arguments);
-  convert(texts, options);
-  convertFrames(texts, options);
-  // Frames are written, not only the last one, unless a single file is named.
-  const job::FrameRequest& frames = options.request.frames;
-  options.request.frames.every = options.output.everyFrame && (frames.count || frames.first);
+  convertRendering(texts, options);
   checkStandardStreams(options);
-  if (options.request.limits.samples)
-    options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   return options;
 }
 
@@ -170,6 +150,7 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
                         .mixedDevices = options.mixedDevices});
     job::RenderJob job(engine, std::move(resolved), console);
     output::checkSize(plan, {job.region().width, job.region().height});
+    if (options.prepared) options.prepared(job);
     const GracefulStop stop;  // from here on, Ctrl-C completes the batch
     console.setGracefulStop(&stop);
 
@@ -207,6 +188,7 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
       throw;
     }
     if (video && video->finish(result.interrupted, console)) files = {{options.video->file, ""}};
+    if (options.written) options.written(result, frames);
     job.outputsWritten(result, console);
 
     addWarnings(result, console);

@@ -32,24 +32,6 @@ io::Image emptyImage(const FilmState& film) {
   return image;
 }
 
-// Merges two lists of slots by the rule of film_coverage.glsl: sorted by id, the smallest ids are kept.
-void mergeCoverage(shared::CoverageSlot* into, const shared::CoverageSlot* from) {
-  std::array<shared::CoverageSlot, 2 * shared::kCoverageSlots> merged{};
-  std::size_t count = 0;
-  for (std::size_t a = 0, b = 0; a < shared::kCoverageSlots || b < shared::kCoverageSlots;) {
-    const bool hasA = a < shared::kCoverageSlots && into[a].samples > 0;
-    const bool hasB = b < shared::kCoverageSlots && from[b].samples > 0;
-    if (!hasA && !hasB) break;
-    if (hasA && hasB && into[a].id == from[b].id)
-      merged[count++] = {into[a].id, into[a++].samples + from[b++].samples};
-    else if (hasA && (!hasB || into[a].id < from[b].id))
-      merged[count++] = into[a++];
-    else
-      merged[count++] = from[b++];
-  }
-  std::copy_n(merged.begin(), shared::kCoverageSlots, into);
-}
-
 // Adds everything but counts and values.
 void addSums(FilmState& film, const FilmState& part) {
   const auto addFixedSums = [](std::vector<shared::FixedSum>& into, const std::vector<shared::FixedSum>& from) {
@@ -229,6 +211,23 @@ io::Image varianceImage(const FilmState& film, std::size_t output) {
                               : static_cast<float>(varianceOfMean(plane, i, samples, batches));
   });
   return image;
+}
+
+void mergeCoverage(shared::CoverageSlot* into, const shared::CoverageSlot* from) {
+  std::array<shared::CoverageSlot, 2 * shared::kCoverageSlots> merged{};
+  std::size_t count = 0;
+  for (std::size_t a = 0, b = 0; a < shared::kCoverageSlots || b < shared::kCoverageSlots;) {
+    const bool hasA = a < shared::kCoverageSlots && into[a].samples > 0;
+    const bool hasB = b < shared::kCoverageSlots && from[b].samples > 0;
+    if (!hasA && !hasB) break;
+    if (hasA && hasB && into[a].id == from[b].id)
+      merged[count++] = {into[a].id, into[a++].samples + from[b++].samples};
+    else if (hasA && (!hasB || into[a].id < from[b].id))
+      merged[count++] = into[a++];
+    else
+      merged[count++] = from[b++];
+  }
+  std::copy_n(merged.begin(), shared::kCoverageSlots, into);
 }
 
 bool sameArrays(const FilmState& a, const FilmState& b) {

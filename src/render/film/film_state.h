@@ -132,6 +132,10 @@ io::Image varianceImage(const FilmState& film, std::size_t output = 0);
 // with it.
 bool sameArrays(const FilmState& a, const FilmState& b);
 
+// Merges the kCoverageSlots slots of a pixel into those of `into` by the rule of film_coverage.glsl: sorted by id, the
+// smallest ids are kept.
+void mergeCoverage(shared::CoverageSlot* into, const shared::CoverageSlot* from);
+
 // Merges `part` into `film`: adds sums, merges coverage, and takes center values from the part that has sample 0.
 // Throws UsageError if both have the same samples, or if either is adaptive. Asserts sameArrays().
 void mergeFilm(FilmState& film, const FilmState& part);
