@@ -11,6 +11,7 @@
 #     QUINTET_SETUP=skip         do nothing; the packages are installed in another way
 #     QUINTET_OS_RELEASE=FILE    used instead of /etc/os-release (tests)
 #     QUINTET_APT_DIR=FOLDER     used instead of /etc/apt for the files that this script writes (tests)
+#     QUINTET_COMMAND_PATH=PATH  used instead of PATH to find commands that replace a package (tests)
 set -euo pipefail
 export LC_ALL=C
 

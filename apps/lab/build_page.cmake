@@ -3,7 +3,7 @@
 # a network, the folder stays empty, the build continues, and the server shows what is missing.
 set(installed ${WEB}/node_modules/.package-lock.json)
 if(NOT EXISTS ${installed} OR ${WEB}/package-lock.json IS_NEWER_THAN ${installed})
-  execute_process(COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error WORKING_DIRECTORY ${WEB} RESULT_VARIABLE failed)
+  execute_process(COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error --fetch-retries=1 --fetch-timeout=60000 WORKING_DIRECTORY ${WEB} RESULT_VARIABLE failed)
   if(failed)
     message(WARNING "The page of the lab is not built: 'npm ci' failed in ${WEB}")
     file(REMOVE_RECURSE ${OUT})

@@ -26,10 +26,12 @@
 #include "cli/failure.h"
 #include "cli/lab_options.h"
 #include "gpu/instance.h"
+#include "lab/private_folder.h"
 #include "lab/server.h"
 #include "lab/start_target.h"
 #include "lab/worker.h"
 #include "lab/worker_process.h"
+#include "shader/include_roots.h"
 
 extern char** environ;  // NOLINT: POSIX
 
@@ -78,6 +80,8 @@ int serve(const cli::LabOptions& request) {
   fs::create_directories(target.folder, error);
   if (error) throw FileError(target.folder, "cannot create the folder: " + error.message());
   const ProjectFolder project(target.folder);
+  shader::addIncludeRoot(project.root());  // of the workers, too
+  removeAbandonedFolders();
   ServerOptions options;
   options.address = request.bind;
   options.device = request.device;

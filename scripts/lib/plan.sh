@@ -15,18 +15,19 @@ die() {
 needNames=()    # names, separated by spaces
 needVersion=()  # minimum version, or empty
 needOptional=() # 'optional' or empty
+needCommand=()  # command that replaces the package, or empty
 needRemark=()   # consequence if it is missing, or empty
 
 # readPackageList FILE [GROUP…]: reads the packages of these groups; of all groups if none is given.
 readPackageList() {
-    local file=$1 line name names version optional remark group='' wanted
+    local file=$1 line name names version optional command remark group='' wanted
     shift
     wanted=" $* "
     for name in "$@"; do
         grep -Fxq -- "[$name]" "$file" || die "unknown group '$name'; see --help"
     done
     while IFS= read -r line || [[ -n $line ]]; do
-        version='' optional='' remark=''
+        version='' optional='' command='' remark=''
         if [[ $line =~ ^([^#]*)#[[:space:]]*(.*)$ ]]; then
             line=${BASH_REMATCH[1]} remark=${BASH_REMATCH[2]}
         fi
@@ -39,6 +40,9 @@ readPackageList() {
         if [[ $line =~ ^(.*[[:space:]])optional[[:space:]]*$ ]]; then
             line=${BASH_REMATCH[1]} optional=optional
         fi
+        if [[ $line =~ ^(.*[[:space:]])unless[[:space:]]+([a-z0-9.+-]+)[[:space:]]*$ ]]; then
+            line=${BASH_REMATCH[1]} command=${BASH_REMATCH[2]}
+        fi
         if [[ $line =~ ^(.*)\>=[[:space:]]*([^[:space:]]+)[[:space:]]*$ ]]; then
             line=${BASH_REMATCH[1]} version=${BASH_REMATCH[2]}
         fi
@@ -49,6 +53,7 @@ readPackageList() {
         needNames+=("${names[*]}")
         needVersion+=("$version")
         needOptional+=("$optional")
+        needCommand+=("$command")
         needRemark+=("$remark")
     done <"$file"
 }
@@ -119,8 +124,15 @@ findMissing() {
     done
 }
 
+# hasCommand NAME: succeeds if it is a command, whichever package it is from.
+hasCommand() (
+    PATH=${QUINTET_COMMAND_PATH-$PATH}
+    command -v "$1" >/dev/null
+)
+
 isInstalled() {
     local name
+    if [[ -n ${needCommand[$1]} ]] && hasCommand "${needCommand[$1]}"; then return 0; fi
     for name in ${needNames[$1]}; do
         if versionFits "${installedVersion[$name]-}" "${needVersion[$1]}"; then return 0; fi
     done

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostic.h"
@@ -19,8 +20,11 @@
 #include "base/error.h"
 #include "check/catalog.h"
 #include "check/diagnostic_text.h"
+#include "lab/course.h"
+#include "lab/lecture_limits.h"
 #include "lab/page.h"
 #include "lab/program_files.h"
+#include "lab/source_format.h"
 #include "lab/zip.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
@@ -35,7 +39,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::string_view kFiles = "/api/files/", kDocs = "/api/docs/", kLessons = "lessons/";
+constexpr std::string_view kFiles = "/api/files/", kDocs = "/api/docs/";
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 
 HttpResponse jsonResponse(const Json& json, unsigned status = 200) {
@@ -85,30 +89,6 @@ std::string_view documentText(std::string_view name) {
   const std::span<const EmbeddedFile> files = embeddedDocumentation();
   const auto found = std::ranges::find(files, name, &EmbeddedFile::path);
   return found == files.end() ? std::string_view() : found->data;
-}
-
-// "lessons/14_csg_tree" → "lessons/14_csg.md": a page can be that of several programs.
-std::string pageOf(const std::string& lesson) {
-  const std::string own = lesson + ".md";
-  if (!documentText(own).empty()) return own;
-  const std::string_view number = std::string_view(lesson).substr(0, kLessons.size() + 3);  // "lessons/14_"
-  for (const EmbeddedFile& file : embeddedDocumentation())
-    if (file.path.starts_with(number) && file.path.ends_with(".md")) return std::string(file.path);
-  return {};
-}
-
-// The names of the lessons, in the order in which lessons/README.md links to their pages.
-std::vector<std::string> lessonsInReadingOrder() {
-  std::vector<std::string> names = program::builtInPrograms();
-  std::erase_if(
-      names, [](const std::string& name) { return !name.starts_with(kLessons) || name.size() < kLessons.size() + 4; });
-  const std::string_view overview = documentText("lessons/README.md");
-  const auto position = [&](const std::string& name) {
-    const std::string page = pageOf(name);
-    return page.empty() ? overview.npos : overview.find(fmt::format("({})", page.substr(kLessons.size())));
-  };
-  std::ranges::stable_sort(names, {}, position);
-  return names;
 }
 
 // A lecture or a zip file: names in the program's folder, and contents.
@@ -168,6 +148,10 @@ HttpResponse Api::route(const HttpRequest& request, const RequestTarget& target)
   if (path == "/api/import") {
     requireMethod(request, "POST");
     return importProgram(request, target);
+  }
+  if (path == "/api/format") {
+    requireMethod(request, "POST");
+    return format(request.body);
   }
   if (request.method != "GET") throw MethodError{path == "/api/programs" ? "GET, POST" : "GET"};
   if (path.starts_with(kDocs)) return documentation(path.substr(kDocs.size()));
@@ -285,18 +269,20 @@ HttpResponse Api::copyProgram(const std::string& body) const {
 }
 
 HttpResponse Api::lessons() const {
+  static const std::vector<Lesson> kCourse =
+      courseLessons(documentText("lessons/README.md"), documentText, program::builtInPrograms());
   Json list = Json::array();
-  for (const std::string& name : lessonsInReadingOrder()) {
-    std::string title = name.substr(kLessons.size() + 3);
-    std::ranges::replace(title, '_', ' ');
+  for (const Lesson& lesson : kCourse) {
+    const std::string copy = "lessons/" + lesson.name;
     std::error_code ignored;
-    list.push_back({{"name", fmt::format("<programs/{}>", name)},
-                    {"number", name.substr(kLessons.size(), 2)},
-                    {"title", title},
-                    {"page", pageOf(name)},
-                    {"image", fmt::format("images/{}.png", name)},
-                    {"copy", name},
-                    {"copied", fs::is_directory(project_.root() / name, ignored)}});
+    list.push_back({{"name", lesson.name},
+                    {"number", lesson.number},
+                    {"title", lesson.title},
+                    {"page", lesson.page},
+                    {"image", lesson.image},
+                    {"program", fmt::format("<programs/{}>", lesson.program)},
+                    {"copy", copy},
+                    {"copied", fs::is_directory(project_.root() / copy, ignored)}});
   }
   return jsonResponse(list);
 }
@@ -312,6 +298,12 @@ HttpResponse Api::documentation(const std::string& name) const {
       .type = std::string(contentType(name)), .body = std::string(text), .headers = {{"Cache-Control", "no-cache"}}};
 }
 
+HttpResponse Api::format(const std::string& text) const {
+  const fs::path formatter = findFormatter();
+  if (formatter.empty()) return errorResponse(501, "clang-format is not installed on the machine of the server");
+  return jsonResponse({{"text", formatSource(formatter, text)}, {"formatter", formatter.filename().string()}});
+}
+
 HttpResponse Api::exportProgram(const RequestTarget& target) const {
   const std::string name = required(target, "name"), form = required(target, "form");
   const ProgramFiles found = programFiles(project_, name);
@@ -325,8 +317,12 @@ HttpResponse Api::exportProgram(const RequestTarget& target) const {
     return {.type = "application/zip", .body = zipFiles(files), .headers = {download(stem + ".zip")}};
   }
   if (form != "lecture") throw UsageError(fmt::format("unknown form '{}'; available: zip, lecture", form));
-  if (found.form != "lecture" || found.files.empty())
-    return errorResponse(409, "the program has several files; export it as a zip file");
+  if (found.form != "lecture" || found.files.empty()) {
+    std::vector<std::string> reasons = lectureObstacles(program::loadProgram(loadableName(project_, name)));
+    if (reasons.empty()) reasons.emplace_back("it has several files");
+    return errorResponse(409, fmt::format("a lecture file cannot express this program: {}; export it as a zip file",
+                                          fmt::join(reasons, "; ")));
+  }
   return {.type = std::string(kText),
           .body = found.files.front().text,
           .headers = {download(fs::path(found.main).filename().string())}};

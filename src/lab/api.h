@@ -51,6 +51,7 @@ class Api {
   HttpResponse copyProgram(const std::string& body) const;
   HttpResponse lessons() const;
   HttpResponse documentation(const std::string& name) const;
+  HttpResponse format(const std::string& text) const;
   HttpResponse exportProgram(const RequestTarget& target) const;
   HttpResponse importProgram(const HttpRequest& request, const RequestTarget& target) const;
 

@@ -17,8 +17,8 @@ namespace {
 using job::interactive::JsonFields;
 using Json = nlohmann::json;
 
-const std::vector<std::string> kLabCommands{"open",  "received", "pause", "advance", "pick",
-                                            "value", "explain",  "graph", "restart"};
+const std::vector<std::string> kLabCommands{"open",    "received", "pause", "advance", "pick", "value",
+                                            "explain", "graph",    "exr",   "video",   "read", "restart"};
 
 std::string idOf(const Json& object) {
   const auto id = object.find("id");
@@ -107,6 +107,34 @@ uvec2 parsePixel(JsonFields& fields) {
   return {x, fields.index("y")};
 }
 
+ReadValue parseValue(JsonFields& fields) {
+  ReadValue value{.pixel = parsePixel(fields)};
+  if (fields.has("width") || fields.has("height")) value.size = uvec2(fields.count("width"), fields.count("height"));
+  return value;
+}
+
+RenderVideo parseVideo(JsonFields& fields) {
+  RenderVideo video{.frames = fields.count("frames")};
+  if (video.frames > kMaxVideoFrames) throw UsageError(fmt::format("a video has at most {} frames", kMaxVideoFrames));
+  video.framesPerSecond = fields.findNumber("fps").value_or(video.framesPerSecond);
+  if (!(video.framesPerSecond > 0) || video.framesPerSecond > kMaxFrameRate)
+    throw UsageError(fmt::format("'fps' must be above 0 and at most {:g}", kMaxFrameRate));
+  video.format = fields.findText("format").value_or(video.format);
+  if (video.format != "mp4" && video.format != "webm" && video.format != "gif")
+    throw UsageError(fmt::format("unknown format '{}'; available: mp4, webm, gif", video.format));
+  video.turn = fields.findFlag("turn").value_or(video.turn);
+  return video;
+}
+
+ReadFilePart parseFilePart(JsonFields& fields) {
+  const std::uint32_t file = fields.index("file");
+  const double offset = fields.findNumber("offset").value_or(0);
+  constexpr double kLargest = 9007199254740992.0;  // 2^53: exact in JSON
+  if (!(offset >= 0) || offset > kLargest || offset != std::floor(offset))
+    throw UsageError("'offset' must be a whole number");
+  return {file, static_cast<std::uint64_t>(offset)};
+}
+
 PageCommand parseCommand(const Json& object) {
   JsonFields fields(object.dump(-1, ' ', false, Json::error_handler_t::replace));
   const std::string name = fields.text("do");
@@ -121,12 +149,18 @@ PageCommand parseCommand(const Json& object) {
   } else if (name == "pick") {
     command = PickPixel{parsePixel(fields)};
   } else if (name == "value") {
-    command = ReadValue{parsePixel(fields)};
+    command = parseValue(fields);
   } else if (name == "explain") {
     const uvec2 pixel = parsePixel(fields);
     command = ExplainSample{pixel, fields.has("sample") ? fields.index("sample") : 0};
   } else if (name == "graph") {
     command = DescribeGraph{};
+  } else if (name == "exr") {
+    command = ExportExr{};
+  } else if (name == "video") {
+    command = parseVideo(fields);
+  } else if (name == "read") {
+    command = parseFilePart(fields);
   } else if (name == "restart") {
     command = RestartWorker{};
   } else {

@@ -20,6 +20,8 @@ namespace quintet::lab {
 
 inline constexpr std::size_t kMaxPageMessage = std::size_t{1} << 20;  // bytes
 inline constexpr std::uint32_t kMaxSide = 4096;                       // pixels, of the image
+inline constexpr std::uint32_t kMaxVideoFrames = 10000;
+inline constexpr double kMaxFrameRate = 240;  // frames per second
 
 // Replaces the session. What is unset has the default of the project.
 struct OpenSession {
@@ -49,18 +51,34 @@ struct AdvanceFrames {
 struct PickPixel {
   uvec2 pixel{0};
 };
+// The mean of a block of pixels.
 struct ReadValue {
-  uvec2 pixel{0};
+  uvec2 pixel{0};  // its first
+  uvec2 size{1};   // pixels, at least 1
 };
 struct ExplainSample {
   uvec2 pixel{0};
   std::uint32_t sample = 0;
 };
 struct DescribeGraph {};
+struct ExportExr {};  // the image as OpenEXR, 32-bit floats
+// A video of frames: of a program that counts them, of an animated scene, or of a turn of the camera.
+struct RenderVideo {
+  std::uint32_t frames = 1;  // up to kMaxVideoFrames
+  double framesPerSecond = 24;
+  std::string format = "mp4";  // extension: mp4, webm or gif
+  bool turn = false;           // once around the scene
+};
+// A part of a file that the page downloads.
+struct ReadFilePart {
+  std::uint32_t file = 0;  // number
+  std::uint64_t offset = 0;
+};
 struct RestartWorker {};  // handled by the server
 
-using PageCommand = std::variant<OpenSession, job::interactive::Command, ImageReceived, PauseSession, AdvanceFrames,
-                                 PickPixel, ReadValue, ExplainSample, DescribeGraph, RestartWorker>;
+using PageCommand =
+    std::variant<OpenSession, job::interactive::Command, ImageReceived, PauseSession, AdvanceFrames, PickPixel,
+                 ReadValue, ExplainSample, DescribeGraph, ExportExr, RenderVideo, ReadFilePart, RestartWorker>;
 
 struct PageMessage {
   PageCommand command;

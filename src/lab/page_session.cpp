@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "lab/page_message.h"
+#include "lab/private_folder.h"
 #include "lab/session_events.h"
-#include "lab/unsaved_program.h"
 
 namespace quintet::lab {
 namespace {
@@ -202,7 +202,7 @@ void PageSession::waitForEnd(const std::shared_ptr<Worker>& worker) {
         [self = shared_from_this(), worker, timer](const error_code& /*error*/) { self->waitForEnd(worker); });
     return;
   }
-  removeUnsavedPrograms(worker->process);
+  removePrivateFolders(worker->process);
   if (worker_ == worker) worker_.reset();
   if (worker->replaced || closed_) return;
   end->hung = worker->hung;

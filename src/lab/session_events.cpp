@@ -42,15 +42,6 @@ Json listJson(const std::vector<std::string>& names) {
   return list;
 }
 
-// Programs with a camera of their own ignore navigation.
-bool usesCamera(const program::Program& program) {
-  return std::ranges::any_of(program.files, [](const auto& file) {
-    return std::ranges::any_of(shader::findIncludes(file.second), [](const shader::IncludeDirective& include) {
-      return include.name == "quintet/camera.glsl";
-    });
-  });
-}
-
 Json cameraJson(const Session& session) {
   if (session.camera().orthographic) return nullptr;
   const job::interactive::OrbitCamera camera = session.navigation();
@@ -67,6 +58,14 @@ Json cameraJson(const Session& session) {
 }
 
 }  // namespace
+
+bool usesCamera(const program::Program& program) {
+  return std::ranges::any_of(program.files, [](const auto& file) {
+    return std::ranges::any_of(shader::findIncludes(file.second), [](const shader::IncludeDirective& include) {
+      return include.name == "quintet/camera.glsl";
+    });
+  });
+}
 
 std::string openedJson(const Session& session, const std::string& program, const std::string& scene,
                        const std::string& device) {
@@ -142,6 +141,14 @@ std::string valueJson(uvec2 pixel, const std::vector<float>& value) {
   Json numbers = Json::array();
   for (const float number : value) numbers.push_back(shortest(number));
   return lineOf({{"event", "value"}, {"x", pixel.x}, {"y", pixel.y}, {"value", std::move(numbers)}});
+}
+
+std::string fileJson(std::uint32_t number, const std::string& name, const std::string& type, std::uint64_t bytes) {
+  return lineOf({{"event", "file"}, {"file", number}, {"name", name}, {"type", type}, {"size", bytes}});
+}
+
+std::string progressJson(std::uint64_t done, std::uint64_t total) {
+  return lineOf({{"event", "progress"}, {"done", done}, {"total", total}});
 }
 
 std::string graphJson(const std::string& graph) { return lineOf({{"event", "graph"}, {"graph", Json::parse(graph)}}); }

@@ -25,6 +25,8 @@ struct Statistics {
 
 // `device`: its name. At most kMaxListedNames names of each kind.
 inline constexpr std::size_t kMaxListedNames = 1000;
+// Programs with a camera of their own ignore navigation.
+bool usesCamera(const program::Program& program);
 std::string openedJson(const job::interactive::Session& session, const std::string& program, const std::string& scene,
                        const std::string& device);
 std::string stateJson(const job::interactive::Session& session, const std::string& program, bool paused);
@@ -32,6 +34,9 @@ std::string diagnosticsJson(const std::vector<Diagnostic>& diagnostics, bool out
 std::string statisticsJson(const Statistics& statistics);
 std::string imageJson(const job::interactive::ImageUpdated& image, std::uint32_t number);
 std::string valueJson(uvec2 pixel, const std::vector<float>& value);
+// A file that the page can download in parts (file_message.h). `type`: media type.
+std::string fileJson(std::uint32_t number, const std::string& name, const std::string& type, std::uint64_t bytes);
+std::string progressJson(std::uint64_t done, std::uint64_t total);
 std::string graphJson(const std::string& graph);  // check::pipelineJson()
 std::string workerJson(const std::string& state, const std::string& message, unsigned restarts);
 

@@ -33,7 +33,7 @@ SessionSupervisor::Actions SessionSupervisor::started(double now, bool hold, con
   if (!open_.empty()) actions.toWorker.push_back(resumed(keepParameters_));
   keepParameters_ = true;
   state_ = State::running;
-  stuck_ = false;
+  stuck_ = compiling_ = false;
   lastAlive_ = now;
   return actions;
 }
@@ -66,6 +66,8 @@ SessionSupervisor::Actions SessionSupervisor::pageSent(double now, std::string_v
 void SessionSupervisor::workerSent(double now, std::string_view message) {
   lastAlive_ = now;
   // Events are written by this program: the name comes first.
+  compiling_ = message.starts_with(R"({"event":"stage")") && message.find(kCompilingStage) != message.npos;
+  if (message.starts_with(R"({"event":"progress")")) lastPage_ = now;  // the page waits for a video
   if (message.starts_with(R"({"event":"state")")) shown_ = message;
 }
 
@@ -91,7 +93,7 @@ SessionSupervisor::Actions SessionSupervisor::workerEnded(double now, const Work
   const bool killed = end.signal == 9 && !hung;  // not by the program that it ran
   const std::string message =
       stuck_ ? fmt::format("the driver did not answer within {:g} s; it possibly compiles an endless shader",
-                           limits_.timeout + kStuckSeconds)
+                           stuckSeconds_)
              : end.hung.value_or(endText(end));
   keepParameters_ = killed;
   const bool again = lastCrash_ && now - *lastCrash_ < kCrashSeconds;
@@ -111,8 +113,9 @@ SessionSupervisor::Actions SessionSupervisor::tick(double now) {
     actions.end = true;
     actions.toPage.push_back(
         workerJson("idle", "the session was not used for some time; it continues with the next command", restarts_));
-  } else if (now - lastAlive_ > limits_.timeout + kStuckSeconds && !stuck_) {
+  } else if (now - lastAlive_ > stuckLimit() && !stuck_) {
     stuck_ = true;
+    stuckSeconds_ = stuckLimit();
     actions.end = true;  // workerEnded() follows
   }
   return actions;

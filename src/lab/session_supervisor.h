@@ -12,7 +12,9 @@
 namespace quintet::lab {
 
 inline constexpr double kCrashSeconds = 10;  // a second crash within this time would repeat forever
-inline constexpr double kStuckSeconds = 60;  // beyond the time limit of a launch: compiling can take long
+inline constexpr double kStuckSeconds = 60;  // beyond the time limit of a launch: loading can take long
+// What a worker reports before it gives shaders to the driver, which has as much time as a launch.
+inline constexpr std::string_view kCompilingStage = "compiling shaders";
 
 // How a worker ended.
 struct WorkerEnd {
@@ -41,7 +43,10 @@ class SessionSupervisor {
   Actions connected(double now);
   Actions pageSent(double now, std::string_view message);
   void workerSent(double now, std::string_view message);  // FrameKind::text
-  void workerAlive(double now) { lastAlive_ = now; }
+  void workerAlive(double now) {
+    lastAlive_ = now;
+    compiling_ = false;
+  }
   Actions workerEnded(double now, const WorkerEnd& end);
   // Call it about once per second.
   Actions tick(double now);
@@ -49,6 +54,7 @@ class SessionSupervisor {
  private:
   enum class State { running, ended };
 
+  double stuckLimit() const { return limits_.timeout + (compiling_ ? 0 : kStuckSeconds); }
   Actions started(double now, bool hold, const std::string& state, const std::string& message);
   std::string resumed(bool keepParameters) const;
 
@@ -56,6 +62,8 @@ class SessionSupervisor {
   State state_ = State::ended;
   unsigned restarts_ = 0;
   bool stuck_ = false;          // the worker was ended because it did not answer
+  bool compiling_ = false;      // the last message was kCompilingStage
+  double stuckSeconds_ = 0;     // for which it did not answer
   bool keepParameters_ = true;  // for the next worker
   double lastPage_ = 0, lastAlive_ = 0;
   std::optional<double> lastCrash_;

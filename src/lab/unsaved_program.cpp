@@ -2,14 +2,11 @@
 #include "lab/unsaved_program.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <string>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -21,12 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxName = 128;  // characters
 
-// Of the folders of a process.
-std::string prefixOf(pid_t process) { return fmt::format("quintet-lab-{}-", process); }
-
-// Only this user can read the folder.
-fs::path createFolder() {
-  std::string name = (fs::temp_directory_path() / (prefixOf(::getpid()) + "XXXXXX")).string();
+fs::path createSubfolder(const fs::path& parent) {
+  std::string name = (parent / "program-XXXXXX").string();
   if (!mkdtemp(name.data())) throw FileError(name, std::generic_category().message(errno));
   return name;
 }
@@ -41,8 +34,8 @@ bool isUnsavedName(std::string_view name) {
   return !name.empty() && name.size() <= kMaxName && name.front() != '.' && std::ranges::all_of(name, allowed);
 }
 
-UnsavedProgram::UnsavedProgram(const std::vector<std::pair<std::string, std::string>>& files)
-    : folder_(createFolder()) {
+UnsavedProgram::UnsavedProgram(const fs::path& parent, const std::vector<std::pair<std::string, std::string>>& files)
+    : folder_(createSubfolder(parent)) {
   try {
     for (const auto& [name, text] : files) writeFile(folder_ / name, text);
   } catch (...) {
@@ -55,14 +48,6 @@ UnsavedProgram::UnsavedProgram(const std::vector<std::pair<std::string, std::str
 UnsavedProgram::~UnsavedProgram() {
   std::error_code error;
   fs::remove_all(folder_, error);
-}
-
-void removeUnsavedPrograms(pid_t process) {
-  std::error_code error;
-  std::vector<fs::path> folders;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::temp_directory_path(error), error))
-    if (entry.path().filename().string().starts_with(prefixOf(process))) folders.push_back(entry.path());
-  for (const fs::path& folder : folders) fs::remove_all(folder, error);
 }
 
 }  // namespace quintet::lab

@@ -4,8 +4,6 @@
 #ifndef QUINTET_LAB_UNSAVED_PROGRAM_H
 #define QUINTET_LAB_UNSAVED_PROGRAM_H
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -19,8 +17,8 @@ bool isUnsavedName(std::string_view name);
 
 class UnsavedProgram {
  public:
-  // Pairs of name and text. Throws FileError.
-  explicit UnsavedProgram(const std::vector<std::pair<std::string, std::string>>& files);
+  // `parent`: a private folder. `files`: pairs of name and text. Throws FileError.
+  UnsavedProgram(const std::filesystem::path& parent, const std::vector<std::pair<std::string, std::string>>& files);
   ~UnsavedProgram();
   UnsavedProgram(const UnsavedProgram&) = delete;
   UnsavedProgram& operator=(const UnsavedProgram&) = delete;
@@ -30,9 +28,6 @@ class UnsavedProgram {
  private:
   std::filesystem::path folder_;
 };
-
-// Removes the folders of a process that has ended.
-void removeUnsavedPrograms(pid_t process);
 
 }  // namespace quintet::lab
 #endif

@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -36,15 +38,22 @@
 #include "job/interactive/session.h"
 #include "job/resolve.h"
 #include "job/source_watcher.h"
+#include "lab/file_downloads.h"
 #include "lab/frame_channel.h"
 #include "lab/image_message.h"
 #include "lab/page_message.h"
+#include "lab/pixel_mean.h"
+#include "lab/private_folder.h"
 #include "lab/program_files.h"
 #include "lab/project_folder.h"
 #include "lab/session_events.h"
+#include "lab/session_video.h"
 #include "lab/unsaved_program.h"
 #include "lab/worker_control.h"
+#include "output/plan.h"
+#include "output/write.h"
 #include "program/load.h"
+#include "shader/include_roots.h"
 
 namespace quintet::lab {
 namespace {
@@ -60,6 +69,7 @@ constexpr double kStatisticsSeconds = 0.5;    // between two reports
 constexpr double kAliveSeconds = 1.0;         // between two messages to the server
 constexpr std::uint32_t kMaxUnconfirmed = 2;  // images that the page has not shown yet
 constexpr int kJpegQuality = 85;
+constexpr double kGraphSeconds = 0.4;               // after the first image of a version, if nothing was edited since
 constexpr std::uint32_t kEndlessFrames = 1u << 24;  // of a program that counts frames
 
 // Commands that keep the samples do not interrupt a batch.
@@ -142,7 +152,9 @@ class Inbox {
 class Worker : public job::Observer {
  public:
   Worker(FrameChannel& channel, WorkerSettings settings)
-      : channel_(channel), settings_(std::move(settings)), project_(settings_.folder), inbox_(channel) {}
+      : channel_(channel), settings_(std::move(settings)), project_(settings_.folder), inbox_(channel) {
+    shader::addIncludeRoot(private_.path());
+  }
 
   int run() {
     openEngine();
@@ -155,6 +167,7 @@ class Worker : public job::Observer {
         const OpenSession again = *retry_;
         guarded("", [&] { open(again); });
       }
+      guarded("", [&] { startGraph(); });
       if (session_ && !guarded("", [&] { work(); }) && session_) {  // it would fail again and again
         session_.reset();
         retryAfterSave(opened_, {});
@@ -183,6 +196,7 @@ class Worker : public job::Observer {
   void send(const std::string& json) { channel_.write(FrameKind::text, json); }
 
   void openEngine() {
+    if (graph_.valid()) graph_.wait();  // it uses the compiler
     engine_ = std::make_unique<job::Engine>(
         job::EngineOptions{.device = settings_.device, .log = [this](LogLevel level, const std::string& text) {
                              if (level == LogLevel::warning) send(messageJson("warning", text));
@@ -267,17 +281,50 @@ class Worker : public job::Observer {
     if (command.pixel.x >= size.x || command.pixel.y >= size.y)
       throw UsageError(fmt::format("pixel {},{} is not inside the image of {}x{}", command.pixel.x, command.pixel.y,
                                    size.x, size.y));
+    if (command.size.x > size.x - command.pixel.x || command.size.y > size.y - command.pixel.y)
+      throw UsageError(fmt::format("the {}x{} pixels at {},{} are not inside the image of {}x{}", command.size.x,
+                                   command.size.y, command.pixel.x, command.pixel.y, size.x, size.y));
     if (progress_.samples == 0) throw UsageError("there is no image yet");
     if (!values_) values_ = session.linearImage();
-    const std::uint32_t x = std::min(command.pixel.x / progress_.factor, values_->width - 1);
-    const std::uint32_t y = std::min(command.pixel.y / progress_.factor, values_->height - 1);
-    const auto value = std::as_const(*values_).pixel<float>(x, y);
-    send(withId(valueJson(command.pixel, {value.begin(), value.end()}), id));
+    const uvec2 shown(values_->width, values_->height);  // a preview is smaller
+    const uvec2 begin = min(command.pixel / progress_.factor, shown - 1u);
+    const uvec2 blockSize = min(max(command.size / progress_.factor, uvec2(1)), shown - begin);
+    send(withId(valueJson(command.pixel, pixelMean(*values_, begin, blockSize)), id));
   }
 
   void execute(const ExplainSample& command, const std::string& id) {
     const job::PixelExplanation explanation = requireSession().explain(command.pixel, command.sample);
     send(withId(interactive::explainedJson(explanation, ""), id));
+  }
+
+  void execute(const ExportExr& /*command*/, const std::string& id) {
+    interactive::Session& session = requireSession();
+    if (!session.hasFullSize()) throw UsageError("there is no image at full resolution yet");
+    output::OutputRequest request{.file = downloads_.pathFor("exr"), .output = session.state().output};
+    request.exr = output::ExrFormat{.colors = io::ExrType::f32};
+    output::writeOutputs(output::planOutputs(request, session.program()), session.result(), *this);
+    send(withId(downloads_.offer(request.file, "image.exr", "image/x-exr"), id));
+  }
+
+  // Other commands wait until the video is complete. A page that closes the connection ends this process.
+  void execute(const RenderVideo& command, const std::string& id) {
+    const fs::path file = downloads_.pathFor(command.format);
+    SessionVideo video(requireSession(), command, file);
+    const auto interrupted = [&] {
+      reportAlive();
+      return inbox_.closed();
+    };
+    do {
+      if (!video.addFrame(interrupted)) return;
+      send(withId(progressJson(video.frames(), command.frames), id));
+    } while (!video.isComplete());
+    video.finish(*this);
+    const std::string type = command.format == "gif" ? "image/gif" : "video/" + command.format;
+    send(withId(downloads_.offer(file, "video." + command.format, type), id));
+  }
+
+  void execute(const ReadFilePart& command, const std::string& /*id*/) {
+    channel_.write(FrameKind::binary, downloads_.part(command.file, command.offset));
   }
 
   interactive::Session& requireSession() {
@@ -344,7 +391,7 @@ class Worker : public job::Observer {
   }
 
   void start(const OpenSession& command) {
-    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(command.files);
+    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(private_.path(), command.files);
     if (!unsaved_) loadableName(project_, command.program);  // throws
     interactive::SessionRequest request;
     request.program = loadedName(command);
@@ -463,7 +510,10 @@ class Worker : public job::Observer {
     restarts_ = session_->restarts();
     sendImage();
     reportStatistics();
-    if (graphOutdated_ && progress_.factor == 1 && progress_.samples > 0 && !isMoving()) describeGraph("");
+    if (graphOutdated_ && progress_.factor == 1 && progress_.samples > 0 && !isMoving()) {
+      graphOutdated_ = false;
+      requestGraph(session_->program(), check::sceneFacts(session_->scene()));
+    }
   }
 
   bool countsFrames() const { return session_->program().accumulation == program::Accumulation::program; }
@@ -538,19 +588,44 @@ class Worker : public job::Observer {
     send(statisticsJson(statistics));
   }
 
-  // The check reads the program as it is compiled for the device, without a scene's definitions, so that all stages appear.
-  void describeGraph(const std::string& id) {
-    const interactive::Session& session = requireSession();
-    graphOutdated_ = false;
-    const program::SceneFacts facts = check::sceneFacts(session.scene());
-    describeGraph(session.program(), &facts, id);
+  // The graph of a program with a scene's facts, as an event. The check reads the program as it is compiled for the device,
+  // without a scene's definitions, so that all stages appear.
+  static std::string graphOf(const program::Program& program, const shader::Compiler& compiler,
+                             const std::optional<program::SceneFacts>& facts, const check::DeviceLimits& limits) {
+    const program::SceneFacts* scene = facts ? &*facts : nullptr;
+    const check::CheckResult result = check::check(program, compiler, scene, limits);
+    const auto model = check::describePipeline(program, compiler, scene, result);
+    return model ? graphJson(check::pipelineJson(*model)) : "";
   }
 
-  void describeGraph(const program::Program& program, const program::SceneFacts* facts, const std::string& id) {
-    const check::CheckResult result =
-        check::check(program, engine_->compiler(), facts, job::deviceLimits(engine_->context().info()));
-    const auto model = check::describePipeline(program, engine_->compiler(), facts, result);
-    if (model) send(withId(graphJson(check::pipelineJson(*model)), id));
+  void describeGraph(const std::string& id) {
+    const interactive::Session& session = requireSession();
+    const std::string graph = graphOf(session.program(), engine_->compiler(), check::sceneFacts(session.scene()),
+                                      job::deviceLimits(engine_->context().info()));
+    if (!graph.empty()) send(withId(graph, id));
+  }
+
+  // Compiling all stages again can take seconds, so it happens on a thread, after a pause: a user who types on does not
+  // wait for the graph of an older version.
+  void requestGraph(program::Program program, std::optional<program::SceneFacts> facts) {
+    wantedGraph_ = WantedGraph{std::move(program), std::move(facts), clock_.seconds() + kGraphSeconds};
+    ++graphVersion_;
+  }
+
+  void startGraph() {
+    if (!wantedGraph_ || clock_.seconds() < wantedGraph_->notBefore) return;
+    if (graph_.valid() && graph_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    WantedGraph wanted = std::move(*wantedGraph_);
+    wantedGraph_.reset();
+    graph_ = std::async(std::launch::async,
+                        [this, wanted = std::move(wanted), version = graphVersion_.load(),
+                         &compiler = engine_->compiler(), limits = job::deviceLimits(engine_->context().info())] {
+                          try {
+                            const std::string graph = graphOf(wanted.program, compiler, wanted.facts, limits);
+                            if (!graph.empty() && version == graphVersion_.load()) send(graph);
+                          } catch (const Error&) {  // its diagnostics were sent
+                          }
+                        });
   }
 
   // The graph of a version that compiles, but does not pass the check: it marks what the diagnostics name.
@@ -558,7 +633,8 @@ class Worker : public job::Observer {
     try {
       std::optional<program::SceneFacts> facts;
       if (session_) facts = check::sceneFacts(session_->scene());
-      describeGraph(program::loadProgram(program), facts ? &*facts : nullptr, "");
+      requestGraph(program::loadProgram(program), std::move(facts));
+      wantedGraph_->notBefore = 0;
     } catch (const Error&) {  // its diagnostics were sent
     }
   }
@@ -583,10 +659,18 @@ class Worker : public job::Observer {
     channel_.write(FrameKind::control, controlJson({Control::alive, ""}));
   }
 
+  struct WantedGraph {
+    program::Program program;
+    std::optional<program::SceneFacts> facts;
+    double notBefore = 0;  // on clock_
+  };
+
   FrameChannel& channel_;
   const WorkerSettings settings_;
   const ProjectFolder project_;
   const Stopwatch clock_;
+  const PrivateFolder private_;
+  FileDownloads downloads_{private_.path()};
   std::unique_ptr<job::Engine> engine_;
   std::unique_ptr<UnsavedProgram> unsaved_;  // that the session shows
   std::unique_ptr<interactive::Session> session_;
@@ -600,6 +684,8 @@ class Worker : public job::Observer {
   std::uint64_t batches_ = 0;  // to render while paused
   std::uint64_t restarts_ = 0;
   bool graphOutdated_ = false;
+  std::optional<WantedGraph> wantedGraph_;
+  std::atomic<std::uint64_t> graphVersion_ = 0;    // of the last one that was wanted
   interactive::ImageUpdated progress_, reported_;  // of the last image, and in the last statistics
   bool imagePending_ = false;                      // the last image was not sent
   bool lossyShown_ = false;                        // the last one that was sent is a JPEG
@@ -607,7 +693,8 @@ class Worker : public job::Observer {
   std::uint32_t sent_ = 0, confirmed_ = 0;
   std::string showed_;                                                                          // the last state
   double lastCommand_ = -1e9, lastLossless_ = -1e9, lastStatistics_ = -1e9, lastAlive_ = -1e9;  // on clock_
-  Inbox inbox_;                                                                                 // last: its thread
+  std::future<void> graph_;  // that is being made; its thread uses the members above
+  Inbox inbox_;              // last: its thread
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "program/gsn/lecture.h"
 #include "program/gsn/uniforms.h"
 #include "shader/include_resolver.h"
+#include "shader/include_roots.h"
 
 namespace quintet {
 std::span<const EmbeddedFile> embeddedPrograms();
@@ -35,8 +36,9 @@ constexpr std::string_view kDescription = "program.toml";
 
 Program loadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
+  const auto roots = shader::IncludeRoots::fromEnvironment();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.file_size() <= kMaxFileBytes)
+    if (entry.is_regular_file() && entry.file_size() <= kMaxFileBytes && roots.allows(entry.path()))
       files[entry.path().filename().string()] = readTextFile(entry.path());
   const auto toml = files.find(std::string(kDescription));
   if (toml == files.end()) throw FileError(folder, "contains no program.toml");
@@ -60,10 +62,12 @@ std::optional<Program> findFolder(const std::string& nameOrPath) {
 // Reads the images that comments of uniforms name as defaults.
 void readImages(const fs::path& folder, const std::string& text, std::map<std::string, std::string>& files) {
   LectureErrors ignored(text, {});
+  const auto roots = shader::IncludeRoots::fromEnvironment();
   for (const LectureUniform& uniform : findUniforms(LectureText(text), ignored)) {
     const std::string& image = uniform.parameter.defaultImage;
     std::error_code failed;
     if (image.empty() || image.find('\0') != image.npos || files.count(image)) continue;
+    if (!roots.allows(folder / image)) continue;
     if (fs::is_regular_file(folder / image, failed) && fs::file_size(folder / image, failed) <= kMaxImageBytes &&
         !failed)
       files[image] = readTextFile(folder / image);
@@ -73,6 +77,7 @@ void readImages(const fs::path& folder, const std::string& text, std::map<std::s
 // Returns the files that `text` includes by quoted names relative to the folder, and those that they include.
 std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
   std::map<std::string, std::string> files;
+  const auto roots = shader::IncludeRoots::fromEnvironment();
   std::deque<std::string> open{text};
   while (!open.empty()) {
     const std::string current = std::move(open.front());
@@ -82,8 +87,8 @@ std::map<std::string, std::string> readIncludes(const fs::path& folder, const st
       const fs::path path = folder / include.name;
       const std::string name = fs::path(include.name).lexically_normal().generic_string();
       std::error_code failed;
-      if (files.count(name) || !fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMaxLectureBytes ||
-          failed)
+      if (files.count(name) || !roots.allows(path) || !fs::is_regular_file(path, failed) ||
+          fs::file_size(path, failed) > kMaxLectureBytes || failed)
         continue;
       open.push_back(files[name] = readTextFile(path));
     }
@@ -106,10 +111,11 @@ Program loadLecture(const fs::path& file) {
   const std::string text = readTextFile(file);
   const fs::path folder = file.parent_path();
   std::map<std::string, std::string> files = readIncludes(folder, text);
+  const auto roots = shader::IncludeRoots::fromEnvironment();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxLectureBytes &&
-        !belongsToAnotherProgram(entry.path(), file, text))
+    if (name.ends_with(".scene.toml") && roots.allows(entry.path()) && entry.is_regular_file(failed) &&
+        entry.file_size(failed) <= kMaxLectureBytes && !belongsToAnotherProgram(entry.path(), file, text))
       files[name] = readTextFile(entry.path());
   }
   readImages(folder, text, files);

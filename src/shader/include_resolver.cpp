@@ -96,8 +96,13 @@ const SourceFile* IncludeResolver::onDisk(const fs::path& path, const std::strin
   }
 }
 
+// A file that the program names itself.
+const SourceFile* IncludeResolver::ofProgram(const fs::path& path, const std::string& libraryPath) {
+  return roots_.allows(path) ? onDisk(path, libraryPath) : nullptr;
+}
+
 const SourceFile* IncludeResolver::inLibrary(const std::string& name) {
-  if (leavesItsRoot(name)) return fs::path(name).is_absolute() ? onDisk(name, {}) : nullptr;
+  if (leavesItsRoot(name)) return fs::path(name).is_absolute() ? ofProgram(name, {}) : nullptr;
   if (const SourceFile* file = inVirtualFiles(name)) return file;
   if (!options_.libraryOverride.empty())
     if (const SourceFile* file = onDisk(options_.libraryOverride / name, name)) return file;
@@ -128,7 +133,8 @@ const SourceFile* IncludeResolver::resolve(const SourceFile& from, const Include
       if (!candidate.empty())
         if (const SourceFile* file = inVirtualFiles(candidate)) return file;
     if (!besideOnDisk.empty())
-      if (const SourceFile* file = onDisk(besideOnDisk, leavesItsRoot(inLibraryPath) ? "" : inLibraryPath)) return file;
+      if (const SourceFile* file = ofProgram(besideOnDisk, leavesItsRoot(inLibraryPath) ? "" : inLibraryPath))
+        return file;
     if (!inLibraryPath.empty())
       if (const SourceFile* file = inLibrary(inLibraryPath)) return file;
   }

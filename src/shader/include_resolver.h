@@ -3,6 +3,7 @@
 //
 // #include <x>  searches the virtual files, the override folder, the embedded library, the include folders.
 // #include "x"  searches relative to the including file (on disk or in the library), then as <x>.
+// Files on disk must be in the IncludeRoots of the environment, if it has any.
 #ifndef QUINTET_SHADER_INCLUDE_RESOLVER_H
 #define QUINTET_SHADER_INCLUDE_RESOLVER_H
 
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "base/embedded.h"
+#include "shader/include_roots.h"
 #include "shader/source.h"
 
 namespace quintet::shader {
@@ -60,11 +62,13 @@ class IncludeResolver {
   const SourceFile* inVirtualFiles(const std::string& name);
   const SourceFile* inLibrary(const std::string& name);
   const SourceFile* onDisk(const std::filesystem::path& path, const std::string& libraryPath);
+  const SourceFile* ofProgram(const std::filesystem::path& path, const std::string& libraryPath);
   const SourceFile* keep(SourceFile file);
 
   const Source& source_;
   const CompilerOptions& options_;
   std::span<const EmbeddedFile> library_;
+  const IncludeRoots roots_ = IncludeRoots::fromEnvironment();
   SourceFile root_;
   std::map<std::string, SourceFile, std::less<>> files_;  // by SourceFile::name
 };

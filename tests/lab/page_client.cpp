@@ -23,6 +23,8 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include "lab/file_message.h"
+
 extern char** environ;  // NOLINT: POSIX
 
 namespace quintet::test {
@@ -163,6 +165,7 @@ void PageClient::sendText(const std::string& text) { connection_->stream.write(a
 bool PageClient::receive(double seconds) {
   event_.reset();
   image_.reset();
+  part_.reset();
   connection_->buffer.clear();
   std::optional<error_code> result;
   connection_->stream.async_read(connection_->buffer,
@@ -170,6 +173,10 @@ bool PageClient::receive(double seconds) {
   if (connection_->run(result, seconds)) return false;
   std::string message = beast::buffers_to_string(connection_->buffer.data());
   if (connection_->stream.got_binary()) {
+    if (const auto part = lab::parseFileMessage(message)) {
+      part_ = part->bytes;
+      return true;
+    }
     const auto header = lab::parseImageHeader(message);
     if (!header) throw std::runtime_error("an image has no valid header");
     image_ = ReceivedImage{*header, message.substr(lab::kImageHeaderBytes)};
@@ -210,6 +217,20 @@ ReceivedImage PageClient::waitForImage(const std::function<bool(const lab::Image
     if (image_ && (!matches || matches(image_->header))) return *image_;
   }
   throw std::runtime_error("the expected image did not arrive");
+}
+
+std::string PageClient::readFile(const Json& file) {
+  std::string content;
+  while (content.size() < file.at("size").get<std::size_t>()) {
+    send({{"do", "read"}, {"file", file.at("file")}, {"offset", content.size()}});
+    do {
+      if (!receive(30)) throw std::runtime_error("the server closed the WebSocket");
+      if (event_ && event_->value("event", "") == "error") throw std::runtime_error(event_->dump());
+    } while (!part_);
+    if (part_->empty()) throw std::runtime_error("the file is shorter than stated");
+    content += *part_;
+  }
+  return content;
 }
 
 unsigned PageClient::waitForClose(double seconds) {

@@ -76,6 +76,8 @@ class PageClient {
   Json waitForWorker(const std::string& state, double seconds = 30);
   // The next image for which the function returns true; the next one without a function.
   ReceivedImage waitForImage(const std::function<bool(const lab::ImageHeader&)>& matches = {}, double seconds = 30);
+  // The content of the file that an event `file` describes, read part by part.
+  std::string readFile(const Json& file);
   // The close code of the server.
   unsigned waitForClose(double seconds = 10);
   void close();
@@ -90,6 +92,7 @@ class PageClient {
   std::unique_ptr<Connection> connection_;
   std::vector<Json> events_;
   std::optional<ReceivedImage> image_;  // of the last receive()
+  std::optional<std::string> part_;     // of a file, of the last receive()
   std::optional<Json> event_;           // of the last receive()
 };
 

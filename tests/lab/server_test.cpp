@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "lab/project_folder.h"
+#include "lab/source_format.h"
 #include "lab/zip.h"
 #include "page_client.h"
 #include "temp_folder.h"
@@ -157,7 +158,9 @@ TEST_F(LabServer, DescribesProgramsAndLessons) {
   EXPECT_EQ(get("/api/program?name=nothing").status, 404u);
 
   const Json lessons = get("/api/lessons").json();
-  EXPECT_EQ(lessons.size(), 28u);  // lesson 14 has two programs
+  EXPECT_EQ(lessons.size(), 28u);
+  EXPECT_EQ(lessons.at(0).at("name"), "00_pipeline");
+  EXPECT_EQ(lessons.at(0).at("program"), "<programs/lessons/01_first_ray>");  // it has none of its own
   const auto positionOf = [&](const std::string& number) {
     std::size_t i = 0;
     while (i < lessons.size() && lessons[i].at("number") != number) ++i;
@@ -166,12 +169,28 @@ TEST_F(LabServer, DescribesProgramsAndLessons) {
   EXPECT_LT(positionOf("14"), positionOf("06")) << "the order of lessons/README.md";
   for (const Json& lesson : lessons) {
     EXPECT_THAT(get("/api/docs/" + lesson.at("page").get<std::string>()).body, StartsWith("# Lesson")) << lesson;
-    EXPECT_EQ(get("/api/docs/" + lesson.at("image").get<std::string>()).headers.at("content-type"), "image/png")
+    EXPECT_THAT(get("/api/docs/" + lesson.at("image").get<std::string>()).headers.at("content-type"),
+                StartsWith("image/"))
         << lesson;
+    EXPECT_THAT(programs.at("builtIn").dump(), HasSubstr(lesson.at("program").get<std::string>()));
     EXPECT_EQ(lesson.at("copied"), false);
   }
   EXPECT_THAT(get("/api/docs/diagnostics/Q101.md").body, HasSubstr("Q101"));
   EXPECT_EQ(get("/api/docs/design/structure.md").status, 404u);
+}
+
+TEST_F(LabServer, FormatsSources) {
+  const std::string text = "void main(){ /**** MISS SHADER ****/\nfloat a=1.0;if(a>0.0)payload.color=vec3(a);}\n";
+  const Reply reply = server_->request("POST", "/api/format", text);
+  if (lab::findFormatter().empty()) {
+    EXPECT_EQ(reply.status, 501u);
+    return;
+  }
+  EXPECT_EQ(reply.status, 200u) << reply.body;
+  EXPECT_EQ(reply.json().at("text"),
+            "void main() { /**** MISS SHADER ****/\n  float a = 1.0;\n  if (a > 0.0) payload.color = vec3(a);\n}\n");
+  EXPECT_THAT(reply.json().at("formatter").get<std::string>(), StartsWith("clang-format"));
+  EXPECT_EQ(get("/api/format").status, 405u);
 }
 
 TEST_F(LabServer, CopiesExportsAndImportsPrograms) {
@@ -196,6 +215,11 @@ TEST_F(LabServer, CopiesExportsAndImportsPrograms) {
   const Reply lecture = get("/api/export?name=lessons%2F05_shadow&form=lecture");
   EXPECT_EQ(lecture.body, original);
   EXPECT_EQ(lecture.headers.at("content-disposition"), "attachment; filename=\"shadow.rt.glsl\"");
+  const Reply folder = get("/api/export?name=%3Cprograms%2Flessons%2F17_records%3E&form=lecture");
+  EXPECT_EQ(folder.status, 409u);
+  EXPECT_THAT(folder.body, HasSubstr("ray types"));
+  EXPECT_THAT(folder.body, HasSubstr("its shader records have the fields"));
+  EXPECT_THAT(folder.body, HasSubstr("export it as a zip file"));
   const Reply zip = get("/api/export?name=lessons%2F05_shadow&form=zip");
   EXPECT_EQ(lab::unzipFiles(zip.body).at("05_shadow/shadow.rt.glsl"), original);
   EXPECT_EQ(server_->request("POST", "/api/import?to=again", zip.body, {{"content-type", "application/zip"}}).status,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -192,6 +193,171 @@ TEST_F(LabSession, PausesAndAdvancesFrames) {
     return event.value("event", "") == "done" && event.at("id") == 3;
   });
   EXPECT_EQ(images, 0u);
+}
+
+// Each frame has its number as red, in steps of 1/255.
+constexpr const char* kCount = R"(void main() { /**** RAY GENERATION SHADER ****/
+  gsnSetPixel(vec4(float(frameID) / 255.0, float(gl_LaunchIDEXT.x) / 255.0, 0.0, 1.0));
+}
+)";
+
+// A script that stands for ffmpeg: the video is its input. Only for servers that start while it exists.
+class FakeFfmpeg {
+ public:
+  explicit FakeFfmpeg(const fs::path& folder) : before_(std::getenv("PATH")) {
+    fs::create_directories(folder / "bin");
+    writeFile(folder / "bin/ffmpeg", "#!/bin/sh\nfor file; do :; done\ncat > \"$file\"\n");
+    fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
+    ::setenv("PATH", ((folder / "bin").string() + ":" + before_).c_str(), 1);
+  }
+  ~FakeFfmpeg() { ::setenv("PATH", before_.c_str(), 1); }
+  FakeFfmpeg(const FakeFfmpeg&) = delete;
+  FakeFfmpeg& operator=(const FakeFfmpeg&) = delete;
+
+ private:
+  const std::string before_;
+};
+
+TEST_F(LabSession, MakesAVideoOfTheFramesOfAProgram) {
+  save(kCount);
+  const FakeFfmpeg ffmpeg(folder_.path());
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage([](const lab::ImageHeader& header) { return header.samples > 2; });  // it starts over
+  page.send({{"do", "video"}, {"frames", 5}, {"fps", 10}, {"format", "mp4"}, {"id", 2}});
+  const Json file = page.waitFor("file");
+  EXPECT_EQ(file.at("id"), 2);
+  EXPECT_EQ(file.at("type"), "video/mp4");
+  std::vector<int> progress;
+  for (const Json& event : page.events())
+    if (event.value("event", "") == "progress") progress.push_back(event.at("done"));
+  EXPECT_THAT(progress, ::testing::ElementsAre(1, 2, 3, 4, 5));
+  const std::string frames = page.readFile(file);
+  ASSERT_EQ(frames.size(), 5u * 64 * 36 * 3);
+  for (std::size_t frame = 0; frame < 5; ++frame) {
+    const std::size_t pixel = (frame * 64 * 36 + 7) * 3;
+    EXPECT_EQ(static_cast<int>(frames[pixel]), static_cast<int>(frame));
+    EXPECT_EQ(static_cast<int>(frames[pixel + 1]), 7);
+  }
+}
+
+TEST_F(LabSession, MakesAVideoOfATurnOfTheCamera) {
+  const FakeFfmpeg ffmpeg(folder_.path());
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open("<programs/normals>"));
+  done(page, 1);
+  page.send({{"do", "video"}, {"frames", 3}, {"format", "gif"}, {"id", 2}});
+  EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("nothing moves"));
+  page.send({{"do", "video"}, {"frames", 3}, {"format", "gif"}, {"turn", true}, {"id", 3}});
+  const std::string frames = page.readFile(page.waitFor("file"));
+  const std::size_t size = std::size_t{64} * 36 * 3;
+  ASSERT_EQ(frames.size(), 3 * size);
+  EXPECT_NE(frames.substr(0, size), frames.substr(size, size));
+  EXPECT_NE(frames.substr(size, size), frames.substr(2 * size));
+}
+
+TEST_F(LabSession, NeedsFfmpegForVideos) {
+  save(kCount);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder_.path().c_str(), 1);
+  const LabProcess server = start();
+  ::setenv("PATH", path.c_str(), 1);
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage([](const lab::ImageHeader& header) { return header.complete && isLossless(header); });
+  page.send({{"do", "video"}, {"frames", 2}, {"id", 2}});
+  const Json error = page.waitFor("error");
+  EXPECT_EQ(error.at("id"), 2);
+  EXPECT_THAT(error.at("message").get<std::string>(), HasSubstr("requires the program ffmpeg"));
+  page.send({{"do", "value"}, {"x", 1}, {"y", 1}, {"id", 3}});  // the session goes on
+  page.waitFor("value");
+}
+
+TEST_F(LabSession, ExportsTheImageAsOpenExr) {
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage([](const lab::ImageHeader& header) { return header.complete && isLossless(header); });
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {0.1, 0.25, 0.5}}, {"id", 2}});
+  done(page, 2);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.complete && isLossless(header); });
+  page.send({{"do", "exr"}, {"id", 3}});
+  const Json file = page.waitFor("file");
+  EXPECT_EQ(file.at("name"), "image.exr");
+  const std::string content = page.readFile(file);
+  const io::Image image = io::decodeImage(std::as_bytes(std::span(content)), "image.exr");
+  EXPECT_EQ(uvec2(image.width, image.height), uvec2(64, 36));
+  ASSERT_EQ(image.type, io::PixelType::f32);
+  // A program of the lecture form writes display values; the file has linear ones, with all bits of a float.
+  page.send({{"do", "value"}, {"x", 3}, {"y", 4}, {"width", 8}, {"height", 2}, {"id", 4}});
+  const Json value = page.waitFor("value").at("value");
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    EXPECT_FLOAT_EQ(image.pixel<float>(3, 4)[channel], value.at(channel).get<float>());
+  EXPECT_NEAR(image.pixel<float>(3, 4)[1], 0.0508760884, 1e-7);  // 0.25 of sRGB; a half differs by 1e-5
+}
+
+TEST_F(LabSession, MeasuresBlocksOfPixels) {
+  save(kCount);
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage([](const lab::ImageHeader& header) { return header.complete && isLossless(header); });
+  const auto green = [&](const Json& block) {
+    Json command{{"do", "value"}, {"id", 2}};
+    command.update(block);
+    page.send(command);
+    return page.waitFor("value").at("value").at(1).get<double>();
+  };
+  double sum = 0;
+  for (int x = 10; x < 14; ++x) sum += green({{"x", x}, {"y", 5}});
+  EXPECT_NEAR(green({{"x", 10}, {"y", 5}, {"width", 4}, {"height", 3}}), sum / 4, 1e-6);
+  page.send({{"do", "value"}, {"x", 60}, {"y", 5}, {"width", 5}, {"height", 3}, {"id", 3}});
+  EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("not inside the image"));
+}
+
+TEST_F(LabSession, ReportsStatisticsWhileFramesPlay) {
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  int samples = 0;
+  for (int i = 0; i < 2; ++i) {
+    const Json statistics = page.waitFor("statistics");
+    EXPECT_EQ(statistics.at("frames"), true);
+    EXPECT_GT(statistics.at("samples"), samples);
+    EXPECT_GT(statistics.at("seconds"), 0);
+    samples = statistics.at("samples");
+  }
+}
+
+TEST_F(LabSession, IncludesFilesOfTheProjectOnly) {
+  fs::create_directory(folder_ / "inner");
+  fs::create_directory(folder_ / "inner/mine");
+  writeFile(folder_ / "secret.glsl", "const vec3 kShade = vec3(1.0);\n");
+  writeFile(folder_ / "inner/shared.glsl", "const vec3 kShade = vec3(0.0, 0.0, 1.0);\n");
+  fs::create_symlink(folder_ / "secret.glsl", folder_ / "inner/mine/link.glsl");
+  const auto saveWith = [&](const std::string& include) {
+    writeFile(folder_ / "inner/mine/mine.rt.glsl",
+              "#include \"" + include + "\"\n" + replaced(kPlain, "shade * payload", "kShade * payload"));
+  };
+  const LabProcess server(folder_ / "inner", {"--size", "16x16", "--spp", "1"});
+  for (const std::string& include :
+       {std::string("../../secret.glsl"), (folder_ / "secret.glsl").string(), std::string("link.glsl")}) {
+    saveWith(include);
+    PageClient page(server);
+    page.send(open());
+    const Json broken = page.waitFor("diagnostics").at("diagnostics");
+    ASSERT_FALSE(broken.empty()) << include;
+    EXPECT_THAT(broken.dump(), HasSubstr("file not found")) << include;
+    EXPECT_THAT(server.request("GET", "/api/program?name=mine").body, ::testing::Not(HasSubstr("vec3 kShade")));
+  }
+  saveWith("../shared.glsl");
+  PageClient page(server);
+  page.send(open());
+  EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 0, 255));
 }
 
 TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {

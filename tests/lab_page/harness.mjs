@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Starts quintet-lab with a project folder of its own, and Chromium. Environment: QUINTET_LAB, the server; WEB, the folder
-// with node_modules; CHROMIUM, the browser.
+// with node_modules; CHROMIUM, the browser, for startBrowser().
 import { spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -8,18 +8,18 @@ import { tmpdir } from "node:os";
 import path from "node:path";
 
 const { QUINTET_LAB, WEB, CHROMIUM } = process.env;
-for (const [name, value] of Object.entries({ QUINTET_LAB, WEB, CHROMIUM })) if (!value) throw new Error(`the environment variable ${name} is missing`);
+for (const [name, value] of Object.entries({ QUINTET_LAB, WEB })) if (!value) throw new Error(`the environment variable ${name} is missing`);
 const { chromium } = createRequire(path.join(WEB, "package.json"))("playwright-core");
 
 // Seconds that a first image may take on a slow machine with a busy CPU.
 export const kPatience = Number(process.env.PATIENCE ?? 60_000);
 
 export class Server {
-  static async start({ folder, port = 0, args = [] } = {}) {
+  static async start({ folder, port = 0, args = [], env = {} } = {}) {
     const server = new Server();
     server.ownsFolder = folder === undefined;
     server.folder = folder ?? mkdtempSync(path.join(tmpdir(), "quintet-lab-page-"));
-    server.process = spawn(QUINTET_LAB, [server.folder, "--no-open", "--port", String(port), ...args], { stdio: ["ignore", "pipe", "pipe"] });
+    server.process = spawn(QUINTET_LAB, [server.folder, "--no-open", "--port", String(port), ...args], { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...env } });
     server.output = "";
     server.url = await new Promise((resolve, reject) => {
       const read = (data) => {
@@ -51,9 +51,8 @@ export class Server {
   }
   async stop({ keepFolder = false } = {}) {
     if (this.process.exitCode === null && this.process.signalCode === null) {
-      const ended = new Promise((resolve) => this.process.once("exit", resolve));
       this.process.removeAllListeners("exit");
-      this.process.once("exit", () => undefined);
+      const ended = new Promise((resolve) => this.process.once("exit", resolve));
       this.process.kill("SIGTERM");
       await Promise.race([ended, new Promise((resolve) => setTimeout(resolve, 5000))]);
       this.process.kill("SIGKILL");
@@ -63,6 +62,7 @@ export class Server {
 }
 
 export async function startBrowser() {
+  if (!CHROMIUM) throw new Error("the environment variable CHROMIUM is missing");
   return chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] });
 }
 

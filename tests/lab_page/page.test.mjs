@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the lab in Chromium, against the server: editing, camera, parameters, lessons, and what goes wrong.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { colorAt, imageOf, kPatience, openPage, replaceInEditor, Server, showTab, startBrowser, waitForChange, waitForComplete, waitForImage, waitForSaved } from "./harness.mjs";
@@ -323,6 +324,89 @@ test("programs are exported and imported, and a shared page has image and source
   await waitForImage(page);
   const png = await download(/^Image/);
   assert.equal(png.toString("latin1", 1, 4), "PNG");
+});
+
+async function downloadOf(target, click) {
+  const waiting = target.waitForEvent("download");
+  await click();
+  const file = await waiting;
+  return { name: file.suggestedFilename(), content: readFileSync(await file.path()) };
+}
+
+test("the image is downloaded with its values as OpenEXR", async () => {
+  await open(`#program=${encodeURIComponent("<programs/normals>")}`);
+  await waitForComplete(page);
+  await page.getByRole("button", { name: "Share" }).click();
+  const { name, content } = await downloadOf(page, () => page.getByRole("menuitem", { name: "Image values" }).click());
+  assert.equal(name, "normals.exr");
+  assert.deepEqual([...content.subarray(0, 4)], [0x76, 0x2f, 0x31, 0x01], "the magic number of OpenEXR");
+  assert.match(content.subarray(0, 4096).toString("latin1"), /channels\0chlist/);
+});
+
+test("a folder program says why it has no lecture file", async () => {
+  await open("#lesson=17_records");
+  await page.getByRole("button", { name: "Share" }).click();
+  await page.getByRole("menuitem", { name: "Lecture file" }).click();
+  await page.locator(".toast.error", { hasText: "it has the ray types" }).waitFor();
+});
+
+// A script stands for ffmpeg: the video is what it gets.
+test("a video is rendered with progress, can be canceled, and reports that ffmpeg is missing", async () => {
+  const bin = mkdtempSync(path.join(tmpdir(), "quintet-lab-bin-"));
+  const own = await Server.start({ env: { PATH: bin } });
+  try {
+    page = await openPage(context, own.url + "#lesson=19_dynamic");
+    await waitForImage(page);
+    await page.getByRole("button", { name: "Share" }).click();
+    await page.getByRole("menuitem", { name: "Video" }).click();
+    const dialog = page.getByRole("dialog", { name: "Video" });
+    await dialog.getByLabel("Frames", { exact: true }).fill("3");
+    await dialog.getByRole("button", { name: "Render" }).click();
+    await dialog.locator(".video-message.failed", { hasText: "requires the program ffmpeg" }).waitFor();
+
+    writeFileSync(path.join(bin, "ffmpeg"), '#!/bin/sh\nfor file; do :; done\n/bin/cat > "$file"\n', { mode: 0o755 });
+    const { name, content } = await downloadOf(page, () => dialog.getByRole("button", { name: "Render" }).click());
+    assert.equal(name, "19_dynamic.mp4");
+    assert.equal(content.length, 3 * 640 * 360 * 3);
+    assert.notDeepEqual(content.subarray(0, 640 * 360 * 3), content.subarray(640 * 360 * 3, 2 * 640 * 360 * 3));
+
+    await dialog.getByLabel("Frames", { exact: true }).fill("5000");
+    await dialog.getByRole("button", { name: "Render" }).click();
+    await dialog.locator(".video-message", { hasText: "of 5000 frames" }).waitFor();
+    await dialog.getByRole("button", { name: "Cancel" }).click();
+    await dialog.waitFor({ state: "detached" });
+    for (let i = 0; i < 200 && own.workers().length > 1; ++i) await page.waitForTimeout(50);
+    assert.equal(own.workers().length, 1, "the process that rendered has ended");
+    await waitForImage(page);
+  } finally {
+    await own.stop();
+    rmSync(bin, { recursive: true, force: true });
+  }
+});
+
+test("code is formatted, and a message says by what", async () => {
+  await open("#lesson=16_callable");
+  await showTab(page, "Miss");
+  await page.locator(".cm-line", { hasText: "payload.color" }).first().click();
+  await page.keyboard.press("End");
+  await page.keyboard.type(" if(true)payload.color*=1.0;");
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Format" }).first().click();
+  const toast = page.locator(".toast", { hasText: /Formatted by clang-format|Indented only: clang-format is not installed/ });
+  await toast.waitFor();
+  if (/Formatted by/.test(await toast.textContent())) await page.locator(".cm-line", { hasText: /^  if \(true\) payload\.color \*= 1\.0;$/ }).waitFor();
+  await waitForSaved(page);
+});
+
+test("the page is interactive soon after it is opened", async () => {
+  await context.addInitScript(() => {
+    const look = () => (document.querySelector(".cm-content") && !window.interactiveAt ? (window.interactiveAt = performance.now()) : requestAnimationFrame(look));
+    look();
+  });
+  await open("#lesson=05_shadow");
+  const milliseconds = await page.waitForFunction(() => window.interactiveAt).then((handle) => handle.jsonValue());
+  console.log(`# interactive after ${Math.round(milliseconds)} ms`);
+  assert.ok(milliseconds < 5000, `${milliseconds} ms; the goal on an idle machine is 1000`);
 });
 
 test("a new program is created and found by name", async () => {

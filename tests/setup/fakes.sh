@@ -142,14 +142,14 @@ suite() { printf '%s %s %s\n' "$1" "$2" "$3" >>"$system/suites"; }
 offerAll() { namesInList | sed 's/$/ 9:99/' >>"$system/offered"; }
 installAll() { namesInList | sed 's/$/ 9:99/' >"$system/installed"; }
 namesInList() {
-    sed 's/#.*//; s/|.*//; s/>=.*//; s/optional//; s/ *$//; /^$/d; /^\[/d' "$repo/scripts/lib/packages.txt"
+    sed 's/#.*//; s/|.*//; s/>=.*//; s/unless .*//; s/optional//; s/ *$//; /^$/d; /^\[/d' "$repo/scripts/lib/packages.txt"
 }
 
 # setup ARGUMENTS: runs setup.sh. $output has both output streams, $status the exit status.
 setup() {
     status=0
     output=$(PATH="${onlyPath:-$system/bin:$PATH}" \
-        QUINTET_OS_RELEASE="$system/os-release" QUINTET_APT_DIR="$system/apt" \
+        QUINTET_OS_RELEASE="$system/os-release" QUINTET_APT_DIR="$system/apt" QUINTET_COMMAND_PATH="$system/commands" \
         "$BASH" "$repo/scripts/setup.sh" "$@" 2>&1 </dev/null) || status=$?
 }
 

@@ -223,6 +223,26 @@ neededNotOffered() {
     expectOutput universe
 }
 
+# npm of a Node.js that is not Debian's.
+commandReplacesPackage() {
+    bookworm
+    installAll
+    installed npm none
+    setup page
+    expectCalls "apt-get update
+apt-get install npm"
+    bookworm
+    installAll
+    installed npm none
+    mkdir -p "$system/commands"
+    printf '#!/bin/sh\n' >"$system/commands/npm"
+    chmod +x "$system/commands/npm"
+    setup page
+    expectStatus 0
+    expectOutput "nothing to install"
+    expectCalls ''
+}
+
 optionalNotOffered() {
     noble 25.0.7
     offer vulkan-tools none
@@ -391,7 +411,7 @@ hideSudo() {
 
 # All tests run in parallel, each in its own shell with its own simulated system. Results are printed in this order.
 tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
-    trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
+    trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered commandReplacesPackage optionalNotOffered
     noListsYet offline aptInUse noRootNoSudo sudoRefuses withSudo noApt skipped noHostNames versions groups badList)
 runs=()
 for test in "${tests[@]}"; do

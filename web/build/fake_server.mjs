@@ -42,14 +42,16 @@ function programText(name) {
   return { name, title: name.replace(/^<programs\//, "").replace(/>$/, ""), builtIn: isBuiltIn(name), form: main === "program.toml" ? "folder" : "lecture", main: `${name}/${main}`, scene: scene?.path ?? "", files, diagnostics: [] };
 }
 
-const lessonNames = readdirSync(path.join(root, "programs/lessons")).filter((name) => existsSync(path.join(root, "docs/lessons", `${name}.md`)));
+const kRow = /^\| !\[\]\(\.\.\/([^)]*)\) \| \[(\d\d) · ([^\]]*)\]\((\w+)\.md\) \|$/gm;
+const course = [...readFileSync(path.join(root, "docs/lessons/README.md"), "utf8").matchAll(kRow)];
 const lessons = () =>
-  lessonNames.map((name) => ({
-    name: `<programs/lessons/${name}>`,
-    number: name.slice(0, 2),
-    title: name.slice(3).replaceAll("_", " "),
+  course.map(([, image, number, title, name]) => ({
+    name,
+    number,
+    title,
     page: `lessons/${name}.md`,
-    image: `images/lessons/${name}.png`,
+    image,
+    program: `<programs/lessons/${existsSync(path.join(root, "programs/lessons", name)) ? name : "01_first_ray"}>`,
     copy: `lessons/${name}`,
     copied: existsSync(path.join(folder, "lessons", name)),
   }));
@@ -89,7 +91,7 @@ const server = createServer(async (request, response) => {
   else if (target === "/api/lessons") send(200, lessons());
   else if (target === "/api/programs" && request.method === "GET") {
     const description = (name) => /^\/\/ (?:Lesson \d+: )?(.*)$/m.exec(programText(name)?.files[0].text.split("\n").slice(1).join("\n") ?? "")?.[1] ?? "";
-    const builtIn = [...lessonNames.map((name) => `<programs/lessons/${name}>`), ...["ao", "naive", "normals", "pathtracer"].map((name) => `<programs/${name}>`)];
+    const builtIn = [...readdirSync(path.join(root, "programs/lessons")).map((name) => `<programs/lessons/${name}>`), ...["ao", "naive", "normals", "pathtracer"].map((name) => `<programs/${name}>`)];
     const own = new Set(filesBelow(folder).filter((file) => /(\.rt\.glsl|program\.toml)$/.test(file.path)).map((file) => path.dirname(file.path)));
     send(200, {
       builtIn: builtIn.map((name) => ({ name, title: name.slice(10, -1), description: description(name) })),

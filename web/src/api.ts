@@ -82,6 +82,9 @@ export const api = {
       body: content,
     }),
 
+  // GLSL with clang-format, where the server has it; otherwise an ApiError with status 501.
+  format: (text: string) => json<{ text: string; formatter: string }>("/api/format", { method: "POST", headers: { "Content-Type": "text/plain" }, body: text }),
+
   export: async (name: string, form: "zip" | "lecture") =>
     (await request(`/api/export?name=${encodeURIComponent(name)}&form=${form}`)).blob(),
   import: (to: string, content: BodyInit, type: "text/plain" | "application/zip", replace: boolean) =>

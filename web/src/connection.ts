@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A WebSocket connection to a session: sends commands, dispatches events, and connects again after a loss. Its owner
 // sends `open` each time `onConnect` is called.
-import { type Command, type EventName, type EventOf, type ImageMessage, parseImage, type ServerEvent } from "./protocol";
+import { type Command, type EventName, type EventOf, type FilePart, type ImageMessage, parseFilePart, parseImage, type ServerEvent } from "./protocol";
 
 export type ConnectionState = "connecting" | "open" | "lost" | "refused" | "full";
 
@@ -29,6 +29,7 @@ export class Connection {
   private nextId = 1;
   private closed = false;
   private readonly pending = new Map<number, Pending>();
+  private part: { resolve: (part: FilePart) => void; reject: (error: Error) => void } | undefined; // that is awaited
 
   constructor(private readonly handlers: ConnectionHandlers) {}
 
@@ -50,7 +51,9 @@ export class Connection {
       if (typeof message.data === "string") this.receive(JSON.parse(message.data) as ServerEvent);
       else {
         const image = parseImage(message.data);
+        const part = parseFilePart(message.data);
         if (image) this.handlers.onImage(image);
+        else if (part) this.part?.resolve(part);
       }
     };
     socket.onclose = (event) => {
@@ -87,6 +90,22 @@ export class Connection {
     });
   }
 
+  // Sends a command that makes a file, such as a video, and reads that file.
+  async requestFile(command: Command): Promise<{ name: string; content: Blob }> {
+    const { file, name, type, size } = await this.request(command, "file");
+    const parts: Uint8Array<ArrayBuffer>[] = [];
+    for (let offset = 0; offset < size; ) {
+      const part = await new Promise<FilePart>((resolve, reject) => {
+        this.part = { resolve, reject };
+        this.request({ do: "read", file, offset }, "done").catch(reject);
+      });
+      if (part.bytes.length === 0) throw new Error(`${name}: the file is shorter than expected`);
+      parts.push(part.bytes);
+      offset += part.bytes.length;
+    }
+    return { name, content: new Blob(parts, { type }) };
+  }
+
   private receive(event: ServerEvent): void {
     const pending = event.id === undefined ? undefined : this.pending.get(event.id);
     if (pending && event.id !== undefined) {
@@ -110,6 +129,8 @@ export class Connection {
 
   private rejectAll(message: string): void {
     for (const pending of this.pending.values()) pending.reject(new Error(message));
+    this.part?.reject(new Error(message));
+    this.part = undefined;
     this.pending.clear();
   }
 

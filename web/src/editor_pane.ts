@@ -4,8 +4,8 @@ import { EditorSelection } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { openSearchPanel } from "@codemirror/search";
 import { h } from "./dom";
-import { formatDocument } from "./editor_setup";
 import { icon, type IconName } from "./icons";
+import { formatDocument } from "./source_format";
 import { split } from "./splitter";
 import { stored } from "./stored";
 import { type Tab, TabList } from "./tabs";
@@ -61,7 +61,7 @@ export class EditorArea {
       "div",
       { class: "actions" },
       button("find", "Find", "Find and replace (Ctrl+F)", () => this.withEditor((view) => openSearchPanel(view))),
-      button("format", "Format", "Indent the code and remove spaces at the end of lines (Shift+Alt+F)", () => this.withEditor((view) => formatDocument(view))),
+      button("format", "Format", "Format the code (Shift+Alt+F)", () => this.withEditor((view, document) => void formatDocument(view, document.kind !== "toml" && document.kind !== "text"))),
       this.splitButton,
     );
     this.panes = [new Pane("Editor", (id) => this.select(0, id), actions), new Pane("Second editor", (id) => this.select(1, id), h("span"))];
@@ -132,11 +132,12 @@ export class EditorArea {
     this.refresh();
   }
 
-  private withEditor(run: (view: EditorView) => void): void {
-    const view = this.panes[this.twoPanes.value ? this.active : 0]?.editor;
-    if (!view) return;
+  private withEditor(run: (view: EditorView, document: EditorDocument) => void): void {
+    const pane = this.panes[this.twoPanes.value ? this.active : 0];
+    const view = pane?.editor;
+    if (!view || !pane.shown) return;
     view.focus();
-    run(view);
+    run(view, pane.shown);
   }
 
   private isCode(document: EditorDocument): boolean {

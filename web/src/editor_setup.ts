@@ -61,8 +61,7 @@ export function styleNonce(): string {
 }
 
 // Indents all lines and removes spaces at their ends.
-export function formatDocument(view: EditorView): boolean {
-  if (view.state.readOnly) return false;
+export function indentDocument(view: EditorView): void {
   view.dispatch({ changes: indentRange(view.state, 0, view.state.doc.length), userEvent: "format" });
   const changes = [];
   for (let i = 1; i <= view.state.doc.lines; ++i) {
@@ -71,7 +70,6 @@ export function formatDocument(view: EditorView): boolean {
     if (kept < line.length) changes.push({ from: line.from + kept, to: line.to });
   }
   if (changes.length > 0) view.dispatch({ changes, userEvent: "format" });
-  return true;
 }
 
 const tomlLanguage = StreamLanguage.define(toml);
@@ -84,6 +82,7 @@ export interface EditorOptions {
   context: () => GlslContext;
   completions?: CompletionSource;
   save: () => void;
+  format: (view: EditorView) => void;
   extra: Extension;
 }
 
@@ -110,7 +109,7 @@ export function editorExtensions(options: EditorOptions): Extension {
     Prec.high(
       keymap.of([
         { key: "Mod-s", preventDefault: true, run: () => (options.save(), true) },
-        { key: "Shift-Alt-f", run: formatDocument, preventDefault: true },
+        { key: "Shift-Alt-f", run: (view) => (options.format(view), true), preventDefault: true },
         { key: "F8", run: nextDiagnostic },
       ]),
     ),

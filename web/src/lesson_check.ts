@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks a task of a lesson: renders the user's program and the solution with a connection of its own, and compares the
-// images.
+// Checks a task of a lesson: runs the user's program and the solution in a session of their own, and compares images, or
+// values.
 import { Connection } from "./connection";
 import type { Diagnostic } from "./diagnostic";
 import { compareImages, type ImageDifference, kAllowedShare } from "./image_difference";
 import { type LessonTask, solutionFiles } from "./lesson_tasks";
-import type { ImageMessage } from "./protocol";
+import type { Command, EventName, EventOf, ImageMessage } from "./protocol";
+import { compareMeans, comparePayloads, comparePrints, type ValueComparison, type ValueResult } from "./value_comparison";
 
 export const kCheckSize = { width: 240, height: 135 };
 const kTimeout = 60_000; // ms
@@ -25,6 +26,7 @@ class Renderer {
   private waiting: { resolve: (image: ImageMessage) => void; reject: (error: Error) => void } | undefined;
   private ready: (() => void) | undefined;
   private fail: ((error: Error) => void) | undefined;
+  printed: string[] = []; // since the last open() or print()
 
   constructor() {
     this.link = new Connection({
@@ -37,6 +39,7 @@ class Renderer {
           const error = event.diagnostics.find((diagnostic: Diagnostic) => diagnostic.severity === "error");
           if (error) this.stop(`${error.file.replace(/^.*\//, "")}:${error.line}: ${error.text}`);
         } else if (event.event === "error") this.stop(event.message);
+        else if (event.event === "printed") this.printed.push(...event.lines.map((line) => line.text));
         else if (event.event === "worker" && (event.state === "crashed" || event.state === "hung" || event.state === "waiting")) this.stop(event.message);
       },
       onImage: (image) => {
@@ -57,6 +60,25 @@ class Renderer {
   }
 
   render(files: Sources, task: LessonTask): Promise<ImageMessage> {
+    return this.imageAfter({ do: "open", files, ...kCheckSize, samples: task.samples ?? 1, parameters: task.parameters ?? {} });
+  }
+
+  // Renders again, and returns what the program prints for a pixel.
+  async print(pixel: readonly [number, number]): Promise<string[]> {
+    this.printed = [];
+    await this.imageAfter({ do: "print", x: pixel[0], y: pixel[1] });
+    return this.printed;
+  }
+
+  ask<K extends EventName>(command: Command, wanted: K): Promise<EventOf<K>> {
+    return this.link.request(command, wanted);
+  }
+
+  close(): void {
+    this.link.close();
+  }
+
+  private imageAfter(command: Command): Promise<ImageMessage> {
     return new Promise((resolve, reject) => {
       const timer = setTimeout(() => this.stop("The render took too long"), kTimeout);
       const end = () => clearTimeout(timer);
@@ -64,12 +86,8 @@ class Renderer {
         resolve: (image) => (end(), resolve(image)),
         reject: (error) => (end(), reject(error)),
       };
-      this.link.send({ do: "open", files, ...kCheckSize, samples: task.samples ?? 1, parameters: task.parameters ?? {} });
+      this.link.send(command);
     });
-  }
-
-  close(): void {
-    this.link.close();
   }
 
   private stop(message: string): void {
@@ -77,6 +95,36 @@ class Renderer {
     this.fail?.(error);
     this.waiting?.reject(error);
     this.waiting = undefined;
+  }
+}
+
+// Values that a comparison reads from the program that the renderer shows.
+async function readValues(renderer: Renderer, comparison: ValueComparison) {
+  switch (comparison.kind) {
+    case "mean": {
+      const means = [];
+      for (const block of comparison.blocks) means.push((await renderer.ask({ do: "value", ...block }, "value")).value);
+      return { means };
+    }
+    case "payload": {
+      const [x, y] = comparison.pixel;
+      return { explanation: (await renderer.ask({ do: "explain", x, y }, "explained")).explanation };
+    }
+    case "printed":
+      return { lines: await renderer.print(comparison.pixel) };
+  }
+}
+
+type Values = Awaited<ReturnType<typeof readValues>>;
+
+function compareValues(comparison: ValueComparison, yours: Values, wanted: Values): ValueResult {
+  switch (comparison.kind) {
+    case "mean":
+      return compareMeans(comparison.blocks, comparison.tolerance, yours.means!, wanted.means!);
+    case "payload":
+      return comparePayloads(comparison.pixel, comparison.member, yours.explanation!, wanted.explanation!);
+    case "printed":
+      return comparePrints(comparison.pixel, yours.lines!, wanted.lines!);
   }
 }
 
@@ -96,17 +144,23 @@ export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, stri
   try {
     const solution = solutionFiles(original, main, task);
     await renderer.connect();
-    let image: ImageMessage;
+    const run = async (files: ReadonlyMap<string, string>) => {
+      const image = await renderer.render(Object.fromEntries(files), task);
+      return { image, values: task.compare && (await readValues(renderer, task.compare)) };
+    };
+    let own;
     try {
-      image = await renderer.render(Object.fromEntries(mine), task);
+      own = await run(mine);
     } catch (error) {
       return { passed: false, message: `Your program does not render: ${(error as Error).message}` };
     }
-    const wanted = await renderer.render(Object.fromEntries(solution), task);
-    const [yours, expected] = await Promise.all([decode(image), decode(wanted)]);
+    const wanted = await run(solution);
+    const [yours, expected] = await Promise.all([decode(own.image), decode(wanted.image)]);
+    const images = { yours: yours.bitmap, expected: expected.bitmap };
+    if (task.compare) return { ...compareValues(task.compare, own.values!, wanted.values!), ...images };
     const difference = compareImages(yours.data, expected.data, yours.bitmap.width);
     const passed = difference.differing <= kAllowedShare;
-    return { passed, message: passed ? "Done: the image is that of the solution." : differenceText(difference), yours: yours.bitmap, expected: expected.bitmap, difference };
+    return { passed, message: passed ? "Done: the image is that of the solution." : differenceText(difference), ...images, difference };
   } catch (error) {
     return { passed: false, message: (error as Error).message };
   } finally {

@@ -24,7 +24,6 @@ export interface LessonHost {
 type Progress = Record<string, string[]>;
 
 const filesOf = (program: ProgramText) => new Map(program.files.map((file) => [baseName(file.path), file.text]));
-const shortName = (lesson: Lesson) => lesson.name.replace(/^.*\//, "").replace(/>$/, "");
 
 // Address of a page or figure relative to a page, below docs/; undefined if it leaves the folder.
 export function resolveDocs(page: string, target: string): string | undefined {
@@ -87,7 +86,14 @@ export class LessonPanel {
   }
 
   find(name: string): Lesson | undefined {
-    return this.lessons.find((lesson) => lesson.name === name || shortName(lesson) === name);
+    return this.lessons.find((lesson) => lesson.name === name);
+  }
+
+  // The lesson of a program: of the user's copy, or of the built-in program.
+  findProgram(program: string): Lesson | undefined {
+    const ofProgram = this.lessons.filter((lesson) => lesson.copy === program || lesson.program === program);
+    // A lesson without a program of its own has that of another one.
+    return ofProgram.find((lesson) => lesson.program.endsWith(`/${lesson.name}>`)) ?? ofProgram[0];
   }
 
   async show(lesson: Lesson | undefined): Promise<void> {
@@ -103,7 +109,7 @@ export class LessonPanel {
       return;
     }
     if (this.current !== lesson) return;
-    const tasks = kLessonTasks[shortName(lesson)] ?? [];
+    const tasks = kLessonTasks[lesson.name] ?? [];
     replace(this.body, renderMarkdown(this.withoutFooter(text), this.options(lesson)), this.taskSection(lesson, tasks), this.footer(lesson));
     this.body.scrollTop = 0;
   }
@@ -137,19 +143,19 @@ export class LessonPanel {
   }
 
   private doneTasks(lesson: Lesson): Set<string> {
-    return new Set(this.progress.value[shortName(lesson)] ?? []);
+    return new Set(this.progress.value[lesson.name] ?? []);
   }
 
   private markDone(lesson: Lesson, task: LessonTask): void {
     const done = this.doneTasks(lesson);
     done.add(task.id);
-    this.progress.value = { ...this.progress.value, [shortName(lesson)]: [...done] };
+    this.progress.value = { ...this.progress.value, [lesson.name]: [...done] };
     this.showList();
   }
 
   private showList(): void {
     const state = (lesson: Lesson) => {
-      const tasks = kLessonTasks[shortName(lesson)] ?? [];
+      const tasks = kLessonTasks[lesson.name] ?? [];
       const done = this.doneTasks(lesson);
       return { count: tasks.length, done: tasks.filter((task) => done.has(task.id)).length };
     };
@@ -214,9 +220,9 @@ export class LessonPanel {
   private async check(lesson: Lesson, task: LessonTask): Promise<CheckResult> {
     const { workspace } = this.host;
     const program = workspace.program;
-    if (!program || (program.name !== lesson.copy && program.name !== lesson.name)) return { passed: false, message: "Another program is open. Choose the lesson again." };
+    if (!program || (program.name !== lesson.copy && program.name !== lesson.program)) return { passed: false, message: "Another program is open. Choose the lesson again." };
     try {
-      const original = await api.program(lesson.name);
+      const original = await api.program(lesson.program);
       const mine = new Map(workspace.files.map((file) => [baseName(file.path), workspace.textOf(file)]));
       return await checkTask(task, mine, filesOf(original), baseName(original.main));
     } catch (error) {
@@ -257,7 +263,7 @@ export class LessonPanel {
     );
     if (!answer) return;
     try {
-      const original = await api.program(lesson.name);
+      const original = await api.program(lesson.program);
       const originals = filesOf(original);
       const solution = solutionFiles(originals, baseName(original.main), task);
       for (const file of workspace.files) {

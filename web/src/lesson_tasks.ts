@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tasks of the lessons. A solution is the built-in program with edits. A task is done if the user's program renders the
-// same image as the solution, with the stated parameters.
+// same image as the solution, with the stated parameters, or has the same values.
 import type { ParameterValue } from "./protocol";
+import type { ValueComparison } from "./value_comparison";
 
 export interface TaskEdit {
   file?: string; // name in the folder; the main file if omitted
@@ -16,10 +17,34 @@ export interface LessonTask {
   edits: readonly TaskEdit[];
   samples?: number; // samples or frames that are compared; 1 by default
   parameters?: Record<string, ParameterValue>;
+  compare?: ValueComparison; // instead of the images
 }
 
 // By the name of the lesson, such as "05_shadow".
 export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
+  "00_pipeline": [
+    {
+      id: "payload",
+      text: "A payload is all that a ray returns. Return the color 0.25, 0.5, 0.75 from the shader that runs if a ray hits nothing. The check reads `payload.color` after the ray of pixel 4, 4.",
+      hint: "It is the miss shader of lesson 01, which is open in the editors. Assign to `payload.color`.",
+      edits: [{ from: "payload.color = vec3(0.0);", to: "payload.color = vec3(0.25, 0.5, 0.75);" }],
+      compare: { kind: "payload", pixel: [4, 4], member: "color" },
+    },
+    {
+      id: "launch",
+      text: "`vkCmdTraceRays` starts one invocation for each pixel. Print its index and the size of the launch in the ray generation shader: `debugPrintfEXT(\"%d %d of %d %d\", …)`. The check reads what pixel 60, 30 prints.",
+      hint: "`gl_LaunchIDEXT` and `gl_LaunchSizeEXT` are `uvec3`. The arguments for `%d` are integers, so convert each with `int(…)`.",
+      edits: [
+        {
+          from: "void main() { /**** RAY GENERATION SHADER ****/\n",
+          to:
+            "void main() { /**** RAY GENERATION SHADER ****/\n" +
+            '  debugPrintfEXT("%d %d of %d %d", int(gl_LaunchIDEXT.x), int(gl_LaunchIDEXT.y), int(gl_LaunchSizeEXT.x), int(gl_LaunchSizeEXT.y));\n',
+        },
+      ],
+      compare: { kind: "printed", pixel: [60, 30] },
+    },
+  ],
   "01_first_ray": [
     {
       id: "instance-gray",
@@ -283,6 +308,77 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
       hint: "`payload.t` is negative where a ray misses. There, add the radiance times the `weight` of the path before the loop ends.",
       edits: [{ from: "    if (payload.t < 0.0) break;\n", to: "    if (payload.t < 0.0) {\n      radiance += weight * vec3(0.4, 0.5, 0.7);\n      break;\n    }\n" }],
       parameters: { samples: 4, bounces: 4 },
+    },
+  ],
+  "23_monte_carlo": [
+    {
+      id: "white-sky",
+      text: "Measure an albedo: let the sky have the radiance 1 in all directions, also where the camera sees it. The open floor then shows its albedo. The check compares the mean of 16 frames on the floor and in the sky.",
+      hint: "`skyRadiance` returns the light of a direction.",
+      edits: [{ from: "return mix(vec3(1.0, 0.95, 0.85), vec3(0.25, 0.5, 1.0), clamp(direction.y, 0.0, 1.0));", to: "return vec3(1.0);" }],
+      samples: 16,
+      parameters: { samples: 4 },
+      compare: { kind: "mean", blocks: [{ x: 8, y: 112, width: 40, height: 16 }, { x: 8, y: 4, width: 60, height: 8 }], tolerance: 0.02 },
+    },
+    {
+      id: "sky-only",
+      text: "A random direction is blocked or sees the sky. Show the share that sees the sky: the image is the mean of 1 (sky) and 0 (blocked), without albedo and cosine. The check compares the mean of 16 frames.",
+      hint: "`estimate` returns one sample. It is 1 or 0 now, so there is nothing to divide by.",
+      edits: [
+        {
+          from: "  vec3 incoming = payload.t < 0.0 ? skyRadiance(wi) : vec3(0.0);\n  return albedo / pi * incoming * dot(normal, wi) / density;",
+          to: "  return vec3(payload.t < 0.0 ? 1.0 : 0.0);",
+        },
+      ],
+      samples: 16,
+      parameters: { samples: 4 },
+      compare: { kind: "mean", blocks: [{ x: 8, y: 112, width: 40, height: 16 }, { x: 100, y: 84, width: 48, height: 24 }], tolerance: 0.02 },
+    },
+  ],
+  "24_cosine_sampling": [
+    {
+      id: "furnace",
+      text: "The furnace test: let each sample receive the radiance 1, also where something blocks the sky. With `method` 1, every surface has the color of its albedo, without any noise. Why?",
+      hint: "Only `incoming` changes. The sample is albedo · cosine / π divided by the density cosine / π.",
+      edits: [{ from: "vec3 incoming = payload.t < 0.0 ? skyRadiance(wi) : vec3(0.0);", to: "vec3 incoming = vec3(1.0);" }],
+      parameters: { method: 1 },
+    },
+    {
+      id: "print-density",
+      text: "Print the density of each sample with `debugPrintfEXT(\"%f\", …)` before the ray is traced. The check reads what pixel 24, 120 prints with `method` 0: the density of uniform directions.",
+      hint: "`density` has the value in `estimate`.",
+      edits: [{ from: "  if (density <= 0.0) return vec3(0.0);\n", to: '  if (density <= 0.0) return vec3(0.0);\n  debugPrintfEXT("%f", density);\n' }],
+      parameters: { method: 0 },
+      compare: { kind: "printed", pixel: [24, 120] },
+    },
+  ],
+  "25_next_event": [
+    {
+      id: "upwards",
+      text: "Let the lamp shine upwards, too: a point above it receives light from its other side. The check compares the mean of 16 frames at the ceiling and at the floor.",
+      hint: "`cosLamp` in `byPoint` is the cosine at the lamp. Its absolute value counts both sides.",
+      edits: [{ from: "float cosLamp = wi.y;", to: "float cosLamp = abs(wi.y);" }],
+      samples: 16,
+      compare: { kind: "mean", blocks: [{ x: 100, y: 4, width: 40, height: 6 }, { x: 104, y: 118, width: 32, height: 10 }], tolerance: 0.03 },
+    },
+  ],
+  "26_mis": [
+    {
+      id: "power-heuristic",
+      text: "Use the power heuristic: the weight is the square of the own density, divided by the sum of both squares. It prefers the better technique more than the balance heuristic does.",
+      hint: "`weightOf` computes the weight. The check compares the noise of one frame, so keep the random numbers as they are.",
+      edits: [{ from: "strategy == 2 ? own / (own + other) : 1.0;", to: "strategy == 2 ? own * own / (own * own + other * other) : 1.0;" }],
+    },
+  ],
+  "27_roulette": [
+    {
+      id: "first-event",
+      text: "Gamble from the first scattering event on, instead of the third. The check compares the mean number of events of a path (`show` 1) in 16 frames.",
+      hint: "The condition before `survival` contains the depth.",
+      edits: [{ from: "if (roulette && depth >= 2) {", to: "if (roulette) {" }],
+      samples: 16,
+      parameters: { show: 1 },
+      compare: { kind: "mean", blocks: [{ x: 60, y: 10, width: 120, height: 115 }], tolerance: 0.02 },
     },
   ],
 };

@@ -30,7 +30,7 @@ export function chooseProgram(programs: ProgramList, lessons: readonly Lesson[],
     const group = (title: string, rows: Node[]) => (rows.length > 0 ? [h("h3", {}, title), rows] : []);
     const programRow = (entry: ProgramEntry) => row(entry.title, entry.description, () => finish({ kind: "program", name: entry.name }));
     const show = () => {
-      const isLesson = new Set(lessons.map((lesson) => lesson.name));
+      const isLesson = new Set(lessons.map((lesson) => lesson.program));
       const filtered = (entries: readonly ProgramEntry[]) => entries.filter((entry) => !isLesson.has(entry.name) && matches(entry.title, entry.description)).map(programRow);
       const course = lessons
         .filter((lesson) => matches(lesson.title, lesson.name))

@@ -46,11 +46,12 @@ export interface ProgramText {
 }
 
 export interface Lesson {
-  name: string;
+  name: string; // "05_shadow"
   number: string;
   title: string;
   page: string;
   image: string;
+  program: string; // built-in, that it starts with
   copy: string;
   copied: boolean;
 }
@@ -168,6 +169,8 @@ interface EventBodies {
   printed: { lines: PrintedLine[]; omitted: number };
   picked: Picked;
   value: { x: number; y: number; value: (number | string)[] };
+  progress: { done: number; total: number };
+  file: { file: number; name: string; type: string; size: number };
   explained: { x: number; y: number; sample?: number; frame?: number; explanation: Explanation };
   deviceReplaced: { device: string; message: string };
   note: { message: string };
@@ -193,11 +196,28 @@ export interface ImageMessage {
   file: Uint8Array<ArrayBuffer>;
 }
 
+export interface FilePart {
+  file: number;
+  offset: number;
+  bytes: Uint8Array<ArrayBuffer>;
+}
+
+const kMagicImage = 0x51494d47; // "QIMG"
+const kMagicFile = 0x5146494c; // "QFIL"
+
+// Returns undefined for anything but a part of a file of version 1.
+export function parseFilePart(message: ArrayBuffer): FilePart | undefined {
+  if (message.byteLength < 32) return undefined;
+  const view = new DataView(message);
+  if (view.getUint32(0, false) !== kMagicFile || view.getUint32(4, true) !== 1) return undefined;
+  return { file: view.getUint32(8, true), offset: Number(view.getBigUint64(16, true)), bytes: new Uint8Array(message, 32) };
+}
+
 // Returns undefined for anything but an image of version 1.
 export function parseImage(message: ArrayBuffer): ImageMessage | undefined {
   if (message.byteLength < 32) return undefined;
   const view = new DataView(message);
-  if (view.getUint32(0, false) !== 0x51494d47 || view.getUint32(4, true) !== 1) return undefined;
+  if (view.getUint32(0, false) !== kMagicImage || view.getUint32(4, true) !== 1) return undefined;
   const format = view.getUint8(28);
   if (format !== 1 && format !== 2) return undefined;
   return {

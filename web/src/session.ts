@@ -104,6 +104,15 @@ export class Session {
     return this.link.request(command, wanted);
   }
 
+  askFile(command: Command): Promise<{ name: string; content: Blob }> {
+    return this.link.requestFile(command);
+  }
+
+  // What `open` needs to show what this page shows; undefined before the first state.
+  get currentRequest(): OpenRequest | undefined {
+    return this.current && this.state && this.withState(this.current);
+  }
+
   // Values of a slider that arrive within a frame of the screen become one command.
   setParameter(name: string, value: ParameterValue): void {
     if (this.state) this.state.parameters[name] = value;

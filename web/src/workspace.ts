@@ -11,6 +11,7 @@ import { editorExtensions, type SourceLanguage } from "./editor_setup";
 import type { GlslContext } from "./glsl_help";
 import { type Segment, segmentTitles, splitLecture, stageOfFile } from "./lecture_segments";
 import type { ParameterDescription, ProgramFile, ProgramText } from "./protocol";
+import { formatDocument } from "./source_format";
 import { mergeTexts, minimalChange } from "./text_merge";
 
 // Text of a segment between blank lines, which the editor does not show.
@@ -257,6 +258,7 @@ export class Workspace {
           context: () => this.contextOf(document),
           ...(language === "glsl" && { completions: glslCompletions(() => this.contextOf(document)) }),
           save: () => void this.save(),
+          format: (view) => void formatDocument(view, language === "glsl"),
           extra: EditorView.updateListener.of((update) => {
             document.state = update.state;
             if (update.docChanged) this.edited(document, update.startState.doc.lines !== update.state.doc.lines);

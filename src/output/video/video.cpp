@@ -2,6 +2,7 @@
 #include "output/video/video.h"
 
 #include <algorithm>
+#include <cassert>
 #include <system_error>
 #include <utility>
 
@@ -118,6 +119,8 @@ std::vector<std::string> ffmpegArguments(const VideoRequest& request, uvec2 size
 VideoWriter::VideoWriter(VideoRequest request, OutputPlan plan)
     : request_(std::move(request)), plan_(std::move(plan)) {}
 
+VideoWriter::VideoWriter(VideoRequest request) : request_(std::move(request)) { assert(!request_.resumable); }
+
 void VideoWriter::fail(const std::string& problem) const { throw FileError(request_.file, problem); }
 
 bool VideoWriter::addWritten(const job::Provenance& frame) {
@@ -133,6 +136,8 @@ void VideoWriter::add(const job::RenderResult& frame, job::Observer& observer) {
     for (const WrittenFile& file : writeOutputs(plan_, frame, observer)) images_.push_back(file.path);
   encode(displayImage(plan_, *frame.film));
 }
+
+void VideoWriter::add(const io::Image& frame) { encode(frame); }
 
 void VideoWriter::encode(const io::Image& image) {
   const io::Image frame = videoFormat(request_.file) == VideoFormat::gif ? image : withEvenSides(image);

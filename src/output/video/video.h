@@ -49,11 +49,14 @@ class VideoWriter {
  public:
   // `plan`: of the images of the frames, whose first output is encoded as its display image.
   VideoWriter(VideoRequest request, OutputPlan plan);
+  // For frames that are images already: add(const io::Image&). `request.resumable` must be false.
+  explicit VideoWriter(VideoRequest request);
 
   // For Observer::isFrameWritten: appends the image of the frame if an earlier run has written it. Throws FileError.
   bool addWritten(const job::Provenance& frame);
   // Appends a frame. Throws FileError.
   void add(const job::RenderResult& frame, job::Observer& observer);
+  void add(const io::Image& frame);  // as displayed: 8-bit RGB
   // Completes the video. `incomplete`: the render was interrupted; then a resumable video is not written, and its
   // images stay. Returns whether the video was written. Throws FileError.
   bool finish(bool incomplete, job::Observer& observer);

@@ -96,5 +96,36 @@ TEST(PageMessage, RejectsWhatIsNoObject) {
   errorOf("{\"do\":\"open\",\"program\":\"\xFF\"}");
 }
 
+TEST(PageMessage, ReadsValuesOfBlocks) {
+  const auto one = std::get<ReadValue>(parsed(R"({"do":"value","x":3,"y":4})").command);
+  EXPECT_EQ(one.pixel, uvec2(3, 4));
+  EXPECT_EQ(one.size, uvec2(1));
+  EXPECT_EQ(std::get<ReadValue>(parsed(R"({"do":"value","x":3,"y":4,"width":5,"height":6})").command).size,
+            uvec2(5, 6));
+  EXPECT_THAT(errorOf(R"({"do":"value","x":3,"y":4,"width":0,"height":6})").message, HasSubstr("width"));
+}
+
+TEST(PageMessage, ReadsVideosAndFiles) {
+  const auto video = std::get<RenderVideo>(parsed(R"({"do":"video","frames":48})").command);
+  EXPECT_EQ(video.frames, 48u);
+  EXPECT_EQ(video.framesPerSecond, 24.0);
+  EXPECT_EQ(video.format, "mp4");
+  EXPECT_FALSE(video.turn);
+  const auto gif =
+      std::get<RenderVideo>(parsed(R"({"do":"video","frames":2,"fps":12.5,"format":"gif","turn":true})").command);
+  EXPECT_EQ(gif.framesPerSecond, 12.5);
+  EXPECT_EQ(gif.format, "gif");
+  EXPECT_TRUE(gif.turn);
+  EXPECT_THAT(errorOf(R"({"do":"video","frames":0})").message, HasSubstr("frames"));
+  EXPECT_THAT(errorOf(R"({"do":"video","frames":10001})").message, HasSubstr("10000"));
+  EXPECT_THAT(errorOf(R"({"do":"video","frames":1,"fps":0})").message, HasSubstr("fps"));
+  EXPECT_THAT(errorOf(R"({"do":"video","frames":1,"format":"avi"})").message, HasSubstr("mp4, webm, gif"));
+  const auto part = std::get<ReadFilePart>(parsed(R"({"do":"read","file":2,"offset":5000000000})").command);
+  EXPECT_EQ(part.file, 2u);
+  EXPECT_EQ(part.offset, 5000000000u);
+  EXPECT_THAT(errorOf(R"({"do":"read","file":2,"offset":0.5})").message, HasSubstr("offset"));
+  EXPECT_THAT(errorOf(R"({"do":"read","file":2,"offset":-1})").message, HasSubstr("offset"));
+}
+
 }  // namespace
 }  // namespace quintet::lab

@@ -129,6 +129,35 @@ TEST_F(SessionSupervisorTest, AnIdleSessionThatOpensDoesNotResume) {
   EXPECT_EQ(only(actions.toWorker).at("program"), "other");
 }
 
+TEST_F(SessionSupervisorTest, EndsADriverThatCompilesLongerThanALaunchMayTake) {
+  open();
+  supervisor_.workerSent(10, R"({"event":"stage","text":"compiling shaders"})");
+  EXPECT_FALSE(supervisor_.tick(11.9).end);
+  EXPECT_TRUE(supervisor_.tick(12.1).end);
+  EXPECT_FALSE(supervisor_.tick(12.6).end) << "once";
+  const auto actions = supervisor_.workerEnded(12.7, {.signal = SIGKILL});
+  EXPECT_THAT(states(actions), ElementsAre("hung", "waiting"));
+  EXPECT_THAT(actions.toPage.front(), HasSubstr("within 2 s"));
+  EXPECT_TRUE(actions.hold);
+}
+
+TEST_F(SessionSupervisorTest, GivesOtherWorkMoreTime) {
+  open();
+  supervisor_.workerSent(10, R"({"event":"stage","text":"compiling shaders"})");
+  supervisor_.workerSent(11, R"({"event":"stage","text":"loading fox.glb"})");
+  EXPECT_FALSE(supervisor_.tick(14).end);
+  EXPECT_FALSE(supervisor_.tick(11 + kStuckSeconds).end);
+  EXPECT_TRUE(supervisor_.tick(13.1 + kStuckSeconds).end);
+}
+
+TEST_F(SessionSupervisorTest, AVideoInProgressKeepsTheSessionInUse) {
+  open();
+  for (double now = 50; now <= 400; now += 50) {
+    supervisor_.workerSent(now, R"({"event":"progress","done":1,"total":9})");
+    EXPECT_FALSE(supervisor_.tick(now + 1).end);
+  }
+}
+
 TEST_F(SessionSupervisorTest, RestartsOnRequest) {
   open();
   const auto actions = supervisor_.pageSent(5, R"({"do":"restart"})");

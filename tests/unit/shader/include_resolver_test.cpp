@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Includes: the order of the search, and diagnostics for included and missing files.
 #include "shader/include_resolver.h"
+
+#include <cstdlib>
+
+#include "shader/include_roots.h"
 #include "shader_test_support.h"
 
 namespace quintet::shader {
@@ -138,6 +142,29 @@ TEST(Include, ReportsWhereAMissingFileWasSearched) {
   ASSERT_TRUE(note) << all(result);
   EXPECT_NE(note->text.find("/some/where"), std::string::npos) << note->text;
   EXPECT_NE(note->text.find(folder.path().string()), std::string::npos) << note->text;
+}
+
+TEST(Include, StaysInTheRootsOfTheEnvironment) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "project/program");
+  const auto outside = folder.write("outside.glsl", "int two() { return 2; }\n");
+  folder.write("project/inside.glsl", "int two() { return 2; }\n");
+  std::filesystem::create_symlink(outside, folder.path() / "project/program/link.glsl");
+  const auto compiles = [&](const std::string& include) {
+    return Compiler({})
+        .compile(computeSource("#include \"" + include + "\"", "b.x = two();",
+                               (folder.path() / "project/program/main.comp").string()))
+        .ok();
+  };
+  for (const std::string& include : {std::string("../../outside.glsl"), outside.string(), std::string("link.glsl")}) {
+    EXPECT_TRUE(compiles(include)) << include;
+    addIncludeRoot(folder.path() / "project");
+    EXPECT_FALSE(compiles(include)) << include;
+    EXPECT_TRUE(compiles("../inside.glsl"));
+    addIncludeRoot(folder.path());
+    EXPECT_TRUE(compiles(include)) << "of several roots: " << include;
+    ::unsetenv("QUINTET_INCLUDE_ROOTS");
+  }
 }
 
 TEST(Include, ReportsIncludeCycles) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/include_roots.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+
+#include "base/parse.h"
+
+namespace quintet::shader {
+namespace {
+
+constexpr const char* kIncludeRoots = "QUINTET_INCLUDE_ROOTS";
+
+}  // namespace
+
+IncludeRoots IncludeRoots::fromEnvironment() {
+  IncludeRoots roots;
+  const char* value = std::getenv(kIncludeRoots);
+  for (const std::string& folder : splitText(value ? value : "", ':')) {
+    std::error_code error;
+    if (!folder.empty()) roots.folders_.push_back(std::filesystem::weakly_canonical(folder, error));
+  }
+  return roots;
+}
+
+bool IncludeRoots::allows(const std::filesystem::path& file) const {
+  if (!limited()) return true;
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
+  if (error) return false;
+  return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) {
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+  });
+}
+
+void addIncludeRoot(const std::filesystem::path& folder) {
+  const char* value = std::getenv(kIncludeRoots);
+  const std::string before = value ? value : "";
+  ::setenv(kIncludeRoots, (before.empty() ? folder.string() : before + ":" + folder.string()).c_str(), 1);
+}
+
+}  // namespace quintet::shader
