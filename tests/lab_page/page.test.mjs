@@ -322,7 +322,7 @@ test("programs are exported and imported, and a shared page has image and source
   await page.locator("input[aria-label='File to import']").setInputFiles({ name: "imported one.zip", mimeType: "application/zip", buffer: zip });
   await page.locator(".program-title", { hasText: "imported_one" }).waitFor();
   await waitForImage(page);
-  const png = await download(/^ImagePNG/);
+  const png = await download(/^Image PNG/);
   assert.equal(png.toString("latin1", 1, 4), "PNG");
 });
 
