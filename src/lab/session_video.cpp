@@ -23,6 +23,8 @@ void throwIfFailed(const std::vector<interactive::Event>& events) {
 }
 
 output::VideoRequest videoRequest(const RenderVideo& request, const std::filesystem::path& file) {
+  if (output::findProgram("ffmpeg").empty())
+    throw UsageError("videos require the program ffmpeg, which is not installed on the machine of the server");
   output::VideoRequest video{.file = file, .framesPerSecond = request.framesPerSecond};
   output::checkVideoRequest(video, false);
   return video;

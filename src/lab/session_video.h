@@ -17,8 +17,8 @@ namespace quintet::lab {
 
 class SessionVideo {
  public:
-  // The session restarts, and stays at the last frame. Throws FileError if ffmpeg is missing, and UsageError if all frames
-  // would be the same image.
+  // The session restarts, and stays at the last frame. Throws UsageError if ffmpeg is missing, or if all frames would be the
+  // same image.
   SessionVideo(job::interactive::Session& session, const RenderVideo& request, const std::filesystem::path& file);
 
   // Renders and encodes one frame. Returns false if `interrupted` (Session::step) has returned true. Throws what the

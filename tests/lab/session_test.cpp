@@ -270,7 +270,7 @@ TEST_F(LabSession, NeedsFfmpegForVideos) {
   page.send({{"do", "video"}, {"frames", 2}, {"id", 2}});
   const Json error = page.waitFor("error");
   EXPECT_EQ(error.at("id"), 2);
-  EXPECT_THAT(error.at("message").get<std::string>(), HasSubstr("requires the program ffmpeg"));
+  EXPECT_THAT(error.at("message").get<std::string>(), HasSubstr("require the program ffmpeg"));
   page.send({{"do", "value"}, {"x", 1}, {"y", 1}, {"id", 3}});  // the session goes on
   page.waitFor("value");
 }

@@ -322,7 +322,7 @@ test("programs are exported and imported, and a shared page has image and source
   await page.locator("input[aria-label='File to import']").setInputFiles({ name: "imported one.zip", mimeType: "application/zip", buffer: zip });
   await page.locator(".program-title", { hasText: "imported_one" }).waitFor();
   await waitForImage(page);
-  const png = await download(/^Image/);
+  const png = await download(/^Image PNG/);
   assert.equal(png.toString("latin1", 1, 4), "PNG");
 });
 
@@ -362,7 +362,7 @@ test("a video is rendered with progress, can be canceled, and reports that ffmpe
     const dialog = page.getByRole("dialog", { name: "Video" });
     await dialog.getByLabel("Frames", { exact: true }).fill("3");
     await dialog.getByRole("button", { name: "Render" }).click();
-    await dialog.locator(".video-message.failed", { hasText: "requires the program ffmpeg" }).waitFor();
+    await dialog.locator(".video-message.failed", { hasText: "require the program ffmpeg" }).waitFor();
 
     writeFileSync(path.join(bin, "ffmpeg"), '#!/bin/sh\nfor file; do :; done\n/bin/cat > "$file"\n', { mode: 0o755 });
     const { name, content } = await downloadOf(page, () => dialog.getByRole("button", { name: "Render" }).click());

@@ -43,6 +43,7 @@ export class Lab {
   private outdated = false;
   private toldCamera = false;
   private wasConnected = false;
+  private openings = 0; // the last one counts
 
   private readonly session: Session;
   private readonly workspace: Workspace;
@@ -330,6 +331,7 @@ export class Lab {
   }
 
   private async openFromAddress(): Promise<void> {
+    if (!this.project) return; // start() does it
     const address = new URLSearchParams(location.hash.slice(1));
     const name = address.get("lesson");
     const lesson = name ? this.lesson.find(name) : undefined;
@@ -350,11 +352,13 @@ export class Lab {
   }
 
   private async openProgram(name: string, scene = ""): Promise<void> {
+    const opening = ++this.openings;
     await this.showLesson(undefined);
-    if (await this.load(name, scene)) this.setAddress("program", this.workspace.program!.name);
+    if (await this.load(name, scene, opening)) this.setAddress("program", this.workspace.program!.name);
   }
 
   private async openLesson(lesson: Lesson): Promise<void> {
+    const opening = ++this.openings;
     await this.workspace.save();
     // The list may be older than the copy.
     try {
@@ -364,7 +368,7 @@ export class Lab {
       // The connection reports it.
     }
     const current = this.lesson.find(lesson.name) ?? lesson;
-    if (!(await this.load(current.copied ? current.copy : current.program, ""))) return;
+    if (!(await this.load(current.copied ? current.copy : current.program, "", opening))) return;
     this.workspace.copyTo = current.copy;
     this.setAddress("lesson", current.name);
     await this.showLesson(current);
@@ -400,7 +404,8 @@ export class Lab {
     }
   }
 
-  private async load(name: string, scene: string): Promise<boolean> {
+  // Returns false if that failed, or if the user has opened something else in the meantime.
+  private async load(name: string, scene: string, opening: number): Promise<boolean> {
     await this.workspace.save();
     let program;
     try {
@@ -409,6 +414,7 @@ export class Lab {
       notify(`${name}: ${(error as Error).message}`, "error");
       return false;
     }
+    if (opening !== this.openings) return false;
     this.diagnostics = program.diagnostics;
     this.outdated = false;
     this.toldCamera = false;

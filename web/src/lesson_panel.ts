@@ -92,7 +92,7 @@ export class LessonPanel {
   // The lesson of a program: of the user's copy, or of the built-in program.
   findProgram(program: string): Lesson | undefined {
     const ofProgram = this.lessons.filter((lesson) => lesson.copy === program || lesson.program === program);
-    // A lesson without a program of its own has that of another one.
+    // A lesson without a program of its own shares one.
     return ofProgram.find((lesson) => lesson.program.endsWith(`/${lesson.name}>`)) ?? ofProgram[0];
   }
 

@@ -313,12 +313,12 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
   "23_monte_carlo": [
     {
       id: "white-sky",
-      text: "Measure an albedo: let the sky have the radiance 1 in all directions, also where the camera sees it. The open floor then shows its albedo. The check compares the mean of 16 frames on the floor and in the sky.",
+      text: "Measure an albedo: let the sky have the radiance 1 in all directions, also where the camera sees it. The floor then shows almost its albedo, 0.6: the block hides a small part of the sky. The check compares the mean of 16 frames on the floor and in the sky.",
       hint: "`skyRadiance` returns the light of a direction.",
       edits: [{ from: "return mix(vec3(1.0, 0.95, 0.85), vec3(0.25, 0.5, 1.0), clamp(direction.y, 0.0, 1.0));", to: "return vec3(1.0);" }],
       samples: 16,
       parameters: { samples: 4 },
-      compare: { kind: "mean", blocks: [{ x: 8, y: 112, width: 40, height: 16 }, { x: 8, y: 4, width: 60, height: 8 }], tolerance: 0.02 },
+      compare: { kind: "mean", blocks: [{ x: 190, y: 112, width: 44, height: 16 }, { x: 8, y: 4, width: 60, height: 8 }], tolerance: 0.02 },
     },
     {
       id: "sky-only",

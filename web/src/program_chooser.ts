@@ -25,7 +25,7 @@ export function chooseProgram(programs: ProgramList, lessons: readonly Lesson[],
     const filter = h("input", { type: "search", placeholder: "Filter", "aria-label": "Filter the programs", autofocus: true });
     const listing = h("div", { class: "chooser-list" });
     const row = (title: string, description: string, open: () => void) =>
-      h("button", { type: "button", class: "chooser-row", onclick: open }, h("b", {}, title), h("span", {}, description));
+      h("button", { type: "button", class: "chooser-row", onclick: open }, h("b", {}, title), description && h("span", {}, description));
     const matches = (...texts: string[]) => texts.some((text) => text.toLowerCase().includes(filter.value.trim().toLowerCase()));
     const group = (title: string, rows: Node[]) => (rows.length > 0 ? [h("h3", {}, title), rows] : []);
     const programRow = (entry: ProgramEntry) => row(entry.title, entry.description, () => finish({ kind: "program", name: entry.name }));

@@ -83,10 +83,10 @@ export function exportVideo(open: OpenRequest, state: SessionState, opened: Open
       message.classList.remove("failed");
       message.textContent = "Starting…";
       close.textContent = "Cancel";
-      const begun = performance.now();
+      const startTime = performance.now();
       const own = new VideoRender((done, total) => {
         progress.value = done / total;
-        const left = ((performance.now() - begun) / 1000 / done) * (total - done);
+        const left = ((performance.now() - startTime) / 1000 / done) * (total - done);
         message.textContent = `${done} of ${total} frames${done > 2 ? `, about ${Math.ceil(left)} s left` : ""}`;
       });
       render = own;
