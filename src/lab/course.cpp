@@ -30,18 +30,24 @@ std::string belowDocs(std::string_view target) {
   return target.starts_with(kUp) ? std::string(target.substr(kUp.size())) : std::string(kFolder).append(target);
 }
 
-std::optional<Lesson> lessonOf(std::string_view row) {
-  const auto image = between(row, "| ![](", ")");
-  const auto title = image ? between(image->rest, "| [", "](") : std::nullopt;
+// Path below docs/ of the image in a cell of a table; empty if it has none.
+std::string imageOf(std::string_view cell) {
+  const auto mark = between(cell, "![", "](");
+  const auto image = mark ? between(mark->rest, "", ")") : std::nullopt;
+  return image ? belowDocs(image->inside) : "";
+}
+
+// Without image and program.
+std::optional<Lesson> lessonOf(std::string_view cell) {
+  const auto title = between(cell, "[", "](");
   const auto page = title ? between(title->rest, "", ")") : std::nullopt;
-  const std::size_t separator = title ? title->inside.find(kSeparator) : row.npos;
-  if (!page || separator == row.npos || !page->inside.ends_with(kPageEnd)) return {};
+  const std::size_t separator = title ? title->inside.find(kSeparator) : cell.npos;
+  if (!page || separator == cell.npos || !page->inside.ends_with(kPageEnd)) return {};
   Lesson lesson;
   lesson.name = page->inside.substr(0, page->inside.size() - kPageEnd.size());
   lesson.number = title->inside.substr(0, separator);
   lesson.title = title->inside.substr(separator + kSeparator.size());
   lesson.page = belowDocs(page->inside);
-  lesson.image = belowDocs(image->inside);
   return lesson;
 }
 
@@ -60,12 +66,20 @@ std::vector<Lesson> courseLessons(std::string_view overview,
                                   const std::function<std::string_view(std::string_view)>& text,
                                   const std::vector<std::string>& builtInPrograms) {
   std::vector<Lesson> lessons;
+  std::vector<std::string> images;  // of the row above, by column
   for (const std::string& row : splitText(std::string(overview), '\n')) {
-    std::optional<Lesson> lesson = lessonOf(row);
-    if (!lesson) continue;
-    const std::string_view page = text(lesson->page);
-    lesson->program = programOf(*lesson, page, builtInPrograms);
-    if (!page.empty() && !lesson->program.empty()) lessons.push_back(std::move(*lesson));
+    const std::vector<std::string> cells = splitText(row, '|');
+    std::vector<std::string> rowImages;
+    for (std::size_t column = 0; column < cells.size(); ++column) {
+      rowImages.push_back(imageOf(cells[column]));
+      std::optional<Lesson> lesson = rowImages.back().empty() ? lessonOf(cells[column]) : std::nullopt;
+      if (!lesson || column >= images.size() || images[column].empty()) continue;
+      lesson->image = images[column];
+      const std::string_view page = text(lesson->page);
+      lesson->program = programOf(*lesson, page, builtInPrograms);
+      if (!page.empty() && !lesson->program.empty()) lessons.push_back(std::move(*lesson));
+    }
+    images = std::move(rowImages);
   }
   return lessons;
 }

@@ -20,9 +20,9 @@ struct Lesson {
   std::string program;  // built-in: "lessons/05_shadow"
 };
 
-// `overview`: the text of lessons/README.md, which has a row "| ![](IMAGE) | [NUMBER · TITLE](PAGE) |" for each lesson. `text`
-// returns a page by its path below docs/, empty if it does not exist. A lesson whose name is not that of a program uses the
-// program of the first excerpt in its page. Rows without page or program are left out.
+// `overview`: the text of lessons/README.md. In its tables, a cell "[NUMBER · TITLE](PAGE)" is a lesson if the cell above it has
+// an image, "![…](IMAGE)"; the order is that of the text. `text` returns a page by its path below docs/, empty if it does not exist. A lesson whose name is not that of a program uses the
+// program of the first excerpt in its page. Lessons without page or program are left out.
 std::vector<Lesson> courseLessons(std::string_view overview,
                                   const std::function<std::string_view(std::string_view)>& text,
                                   const std::vector<std::string>& builtInPrograms);

@@ -104,7 +104,7 @@ OptionTable declare(FarmPlanOptions& options) {
       {"farm/submit.sh", "submits the job array and the merge job to Slurm"},
       {"farm/parallel.sh --sshlogin 1/node1,1/node2", "the same plan with GNU parallel over SSH"},
       {"quintet farm status farm", "which parts are done"},
-      {"quintet farm plan fox.glb --frames 0-239 --parts 24 --image fox####.exr -o farm", "ten frames per part"},
+      {"quintet farm plan fox.glb --frames 0-239 --parts 24 --image f####.exr -o farm", "ten frames per part"},
   });
   return table;
 }

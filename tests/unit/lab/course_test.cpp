@@ -12,11 +12,12 @@ See [reference](reference.md).
 
 | | |
 | --- | --- |
-| ![](../images/lessons/00_stages.svg) | [00 · the pipeline](00_pipeline.md) |
-| ![](../images/lessons/05_shadow.png) | [05 · shadow](05_shadow.md) |
-| ![](../images/lessons/06_gone.png) | [06 · without a page](06_gone.md) |
-| ![](../images/lessons/07_lost.png) | [07 · without a program](07_lost.md) |
-| ![](broken | [08 · broken
+| ![Stages](../images/lessons/00_stages.svg) | ![Shadow](../images/lessons/05_shadow.png) |
+| [00 · the pipeline](00_pipeline.md): stages | [05 · shadow](05_shadow.md): rays |
+| ![](../images/lessons/06_gone.png) | ![](../images/lessons/07_lost.png) |
+| [06 · without a page](06_gone.md) | [07 · without a program](07_lost.md) |
+| ![](broken | |
+| [08 · broken | [05 · without an image](05_shadow.md) |
 )";
 
 std::string_view pageText(std::string_view page) {
