@@ -52,7 +52,7 @@ class TableRule {
   void add(std::string_view id, std::string text) { report_.add(id, {}, std::move(text)); }
   void addRecord(std::string_view id, std::string text) {
     constexpr int kMaxReports = 16;  // for one region
-    if (++reports_ <= kMaxReports) add(id, std::move(text));
+    if (!mayHaveGaps_ && ++reports_ <= kMaxReports) add(id, std::move(text));
   }
   std::string name() const { return std::string(tableName(kind_)); }
 
@@ -96,9 +96,7 @@ class TableRule {
     }
     const auto found = byHandle_.find(handle);
     if (found == byHandle_.end()) {
-      if (!mayHaveGaps_)
-        addRecord("Q661",
-                  fmt::format("{} record {} has a handle that is not one of the bound pipeline", name(), index));
+      addRecord("Q661", fmt::format("{} record {} has a handle that is not one of the bound pipeline", name(), index));
       return;
     }
     const auto fits = [&](std::size_t group) { return groups_[group].kind == kind_; };
