@@ -9,20 +9,14 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
+#include "chains.h"
 #include "check/modules/stack_check.h"
 #include "check/suppression.h"
 #include "spirv/shader_record.h"
 
 namespace quintet::layer {
 namespace {
-
-// The first structure of a type in a chain; null if there is none.
-template <class Info>
-const Info* findInChain(const void* chain, VkStructureType type) {
-  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext)
-    if (entry->sType == type) return reinterpret_cast<const Info*>(entry);
-  return nullptr;
-}
 
 Words wordsOf(const VkShaderModuleCreateInfo& info) {
   if (!info.pCode) return nullptr;
@@ -54,6 +48,10 @@ spv::ExecutionModel modelOf(VkShaderStageFlagBits stage) {
   }
 }
 
+std::string identifierOf(const std::uint8_t* bytes, std::uint32_t count) {
+  return bytes ? std::string(bytes, bytes + count) : std::string();
+}
+
 std::optional<std::size_t> indexOf(std::uint32_t stage, std::size_t first, std::size_t count) {
   return stage == VK_SHADER_UNUSED_KHR || stage >= count ? std::nullopt : std::optional(first + stage);
 }
@@ -67,6 +65,9 @@ Device::Device(VkDevice device, VkPhysicalDevice physical, PFN_vkGetDeviceProcAd
   QUINTET_DEVICE_FUNCTIONS(QUINTET_LOAD)
 #undef QUINTET_LOAD
   if (!table.QueueSubmit2) table.QueueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(next(handle, "vkQueueSubmit2KHR"));
+  if (!table.GetDeviceBufferMemoryRequirements)
+    table.GetDeviceBufferMemoryRequirements = reinterpret_cast<PFN_vkGetDeviceBufferMemoryRequirements>(
+        next(handle, "vkGetDeviceBufferMemoryRequirementsKHR"));
   if (!table.GetBufferDeviceAddress)
     table.GetBufferDeviceAddress =
         reinterpret_cast<PFN_vkGetBufferDeviceAddress>(next(handle, "vkGetBufferDeviceAddressKHR"));
@@ -100,6 +101,18 @@ void Device::removeModule(VkShaderModule module) {
   names_.erase({VK_OBJECT_TYPE_SHADER_MODULE, numberOf(module)});
 }
 
+void Device::addIdentifier(VkShaderModule module, const VkShaderModuleIdentifierEXT& identifier) {
+  const std::scoped_lock lock(mutex_);
+  if (const auto found = modules_.find(module); found != modules_.end())
+    identifiers_[identifierOf(identifier.identifier, identifier.identifierSize)] = found->second;
+}
+
+void Device::addIdentifier(const VkShaderModuleCreateInfo& info, const VkShaderModuleIdentifierEXT& identifier) {
+  Words words = wordsOf(info);
+  const std::scoped_lock lock(mutex_);
+  identifiers_[identifierOf(identifier.identifier, identifier.identifierSize)] = std::move(words);
+}
+
 void Device::setName(VkObjectType type, std::uint64_t object, const char* name) {
   if (type != VK_OBJECT_TYPE_PIPELINE && type != VK_OBJECT_TYPE_SHADER_MODULE) return;
   const std::scoped_lock lock(mutex_);
@@ -121,7 +134,8 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     const VkRayTracingPipelineCreateInfoKHR& info = infos[i];
     PipelineCopy& copy = copies[i];
     copy.depth = info.maxPipelineRayRecursionDepth;
-    copy.isLibrary = (info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
+    const auto* flags = findInChain<Flags2>(info.pNext, kPipelineFlags2);
+    copy.isLibrary = ((flags ? flags->flags : info.flags) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
     const std::scoped_lock lock(mutex_);
     for (std::uint32_t s = 0; s < info.stageCount; ++s) {
       const VkPipelineShaderStageCreateInfo& stage = info.pStages[s];
@@ -134,6 +148,10 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
       } else if (const auto* module =
                      findInChain<VkShaderModuleCreateInfo>(stage.pNext, VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO)) {
         added.words = wordsOf(*module);
+      } else if (const auto* identifier = findInChain<VkPipelineShaderStageModuleIdentifierCreateInfoEXT>(
+                     stage.pNext, VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_MODULE_IDENTIFIER_CREATE_INFO_EXT)) {
+        const auto known = identifiers_.find(identifierOf(identifier->pIdentifier, identifier->identifierSize));
+        if (known != identifiers_.end()) added.words = known->second;
       }
       copy.stages.push_back(std::move(added));
     }
@@ -152,8 +170,12 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     // The groups of libraries follow, in the order of the libraries.
     for (std::uint32_t l = 0; info.pLibraryInfo && l < info.pLibraryInfo->libraryCount; ++l) {
       const auto library = pipelines_.find(info.pLibraryInfo->pLibraries[l]);
-      if (library == pipelines_.end()) continue;
+      if (library == pipelines_.end()) {
+        copy.isComplete = false;
+        continue;
+      }
       const PipelineCopy& from = library->second->copy;
+      copy.isComplete = copy.isComplete && from.isComplete;
       const std::size_t first = copy.stages.size();
       copy.stages.insert(copy.stages.end(), from.stages.begin(), from.stages.end());
       for (GroupCopy group : from.groups) {
@@ -173,7 +195,7 @@ void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pi
     auto pipeline = std::make_shared<LinkedPipeline>();
     pipeline->copy = std::move(copies[i]);
     pipeline->handle = pipelines[i];
-    if (!pipeline->copy.isLibrary)
+    if (!pipeline->copy.isLibrary && pipeline->copy.isComplete)
       pipeline->task = instance->worker.add([this, pipeline] {
         try {
           link(*pipeline);
@@ -292,13 +314,12 @@ void Device::report(std::vector<Diagnostic> diagnostics, LinkedPipeline& pipelin
 // Runs on the worker's thread.
 void Device::link(LinkedPipeline& pipeline) const {
   const PipelineCopy& copy = pipeline.copy;
-  std::vector<std::string> names;
-  std::vector<Diagnostic> notes;
+  std::vector<std::string> names, problems(copy.stages.size());
   for (std::size_t i = 0; i < copy.stages.size(); ++i) {
     const StageCopy& stage = copy.stages[i];
-    std::string why = "its SPIR-V is unknown";
+    problems[i] = "its SPIR-V is unknown";
     std::optional<check::ModuleSummary> summary;
-    if (stage.words) summary = check::summarize(*stage.words, why);
+    if (stage.words) summary = check::summarize(*stage.words, problems[i]);
     std::string name = stage.name;
     if (name.empty() && summary && summary->sources.size() == 1) name = summary->sources.begin()->first;
     if (name.empty()) name = fmt::format("stage {}", i);
@@ -306,22 +327,29 @@ void Device::link(LinkedPipeline& pipeline) const {
     // Two stages can be the same entry point with different constants.
     if (std::ranges::find(names, name) != names.end()) name += fmt::format(" (stage {})", i);
     names.push_back(name);
-    if (summary) {
-      pipeline.sources.insert(summary->sources.begin(), summary->sources.end());
-      pipeline.modules.push_back(
-          check::stageModule(name, *stage.words, {modelOf(stage.stage), stage.entryPoint}, stage.values));
-    } else {
-      pipeline.modules.push_back({name, *check::stageOf(modelOf(stage.stage)), {}, why});
-    }
-    if (const check::ModuleStage& last = pipeline.modules.back(); !last.problem.empty()) {
-      Diagnostic d;
-      d.severity = Severity::note;
-      d.file = last.name;
-      d.text = "not checked: " + last.problem;
-      notes.push_back(std::move(d));
-    }
-    const auto module = spirv::Module::read(pipeline.modules.back().spirv);
-    pipeline.recordBytes.push_back(module ? spirv::shaderRecordBytes(*module) : 0);
+    if (!summary) continue;
+    pipeline.sources.insert(summary->sources.begin(), summary->sources.end());
+    problems[i].clear();
+  }
+  pipeline.modules.resize(copy.stages.size());
+  pipeline.recordBytes.resize(copy.stages.size());
+  parallelFor(copy.stages.size(), [&](std::size_t i) {
+    const StageCopy& stage = copy.stages[i];
+    check::ModuleStage& module = pipeline.modules[i];
+    if (problems[i].empty())
+      module = check::stageModule(names[i], *stage.words, {modelOf(stage.stage), stage.entryPoint}, stage.values);
+    else
+      module = {names[i], *check::stageOf(modelOf(stage.stage)), {}, problems[i]};
+    if (const auto read = spirv::Module::read(module.spirv)) pipeline.recordBytes[i] = spirv::shaderRecordBytes(*read);
+  });
+  std::vector<Diagnostic> notes;
+  for (const check::ModuleStage& module : pipeline.modules) {
+    if (module.problem.empty()) continue;
+    Diagnostic d;
+    d.severity = Severity::note;
+    d.file = module.name;
+    d.text = "not checked: " + module.problem;
+    notes.push_back(std::move(d));
   }
   check::PipelineGroups& groups = pipeline.groups;
   groups.noun = "pipeline";
@@ -356,18 +384,20 @@ void Device::checkStackSize(VkCommandBuffer commands, std::uint32_t bytes) {
   if (!bound || !table.GetRayTracingShaderGroupStackSizeKHR) return;
   std::vector<check::StackFrame> chain;
   for (const std::string& stage : bound->result.chain) {
-    check::StackFrame frame{stage, 0};
+    // In several groups, the same shader can need different sizes.
+    std::optional<std::uint64_t> smallest;
     for (std::size_t g = 0; g < bound->copy.groups.size(); ++g) {
       const GroupCopy& group = bound->copy.groups[g];
       const auto add = [&](const std::optional<std::size_t>& index, VkShaderGroupShaderKHR kind) {
-        if (index && bound->modules[*index].name == stage)
-          frame.bytes =
-              table.GetRayTracingShaderGroupStackSizeKHR(handle, bound->handle, static_cast<std::uint32_t>(g), kind);
+        if (!index || bound->modules[*index].name != stage) return;
+        const std::uint64_t size =
+            table.GetRayTracingShaderGroupStackSizeKHR(handle, bound->handle, static_cast<std::uint32_t>(g), kind);
+        smallest = std::min(smallest.value_or(size), size);
       };
       add(group.general, VK_SHADER_GROUP_SHADER_GENERAL_KHR);
       add(group.closestHit, VK_SHADER_GROUP_SHADER_CLOSEST_HIT_KHR);
     }
-    chain.push_back(std::move(frame));
+    chain.push_back({stage, smallest.value_or(0)});
   }
   if (auto found = check::checkStackSize(bytes, chain)) report({std::move(*found)}, *bound);
 }

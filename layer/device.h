@@ -28,7 +28,7 @@ using Words = std::shared_ptr<const std::vector<std::uint32_t>>;
 
 // A stage as the application passed it.
 struct StageCopy {
-  Words words;       // null if unknown: created from a module identifier
+  Words words;       // null if unknown: created from a module identifier of an earlier run, or from a pipeline binary
   std::string name;  // of VK_EXT_debug_utils; can be empty
   VkShaderStageFlagBits stage = VK_SHADER_STAGE_ALL;
   std::string entryPoint;
@@ -46,6 +46,7 @@ struct PipelineCopy {
   std::vector<GroupCopy> groups;
   std::uint32_t depth = 0;  // maxPipelineRayRecursionDepth
   bool isLibrary = false;
+  bool isComplete = true;  // false if a library is unknown, and with it some groups
 };
 
 // A pipeline, and what its check found. Immutable once `task` is done, except for what `mutex` protects.
@@ -82,6 +83,9 @@ class Device {
 
   void addModule(VkShaderModule module, const VkShaderModuleCreateInfo& info);
   void removeModule(VkShaderModule module);
+  // VK_EXT_shader_module_identifier: a later pipeline can name the SPIR-V by it.
+  void addIdentifier(VkShaderModule module, const VkShaderModuleIdentifierEXT& identifier);
+  void addIdentifier(const VkShaderModuleCreateInfo& info, const VkShaderModuleIdentifierEXT& identifier);
   void setName(VkObjectType type, std::uint64_t object, const char* name);
   std::string nameOf(VkObjectType type, std::uint64_t object);
 
@@ -115,6 +119,7 @@ class Device {
 
   std::mutex mutex_;
   std::unordered_map<VkShaderModule, Words> modules_;
+  std::unordered_map<std::string, Words> identifiers_;
   std::unordered_map<VkPipeline, std::shared_ptr<LinkedPipeline>> pipelines_;
   std::unordered_map<VkDeferredOperationKHR, Deferred> deferred_;
   std::unordered_map<VkCommandBuffer, std::shared_ptr<LinkedPipeline>> bound_;

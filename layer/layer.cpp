@@ -69,6 +69,20 @@ VKAPI_ATTR void VKAPI_CALL destroyShaderModule(VkDevice handle, VkShaderModule m
   device->table.DestroyShaderModule(handle, module, allocator);
 }
 
+VKAPI_ATTR void VKAPI_CALL getShaderModuleIdentifier(VkDevice handle, VkShaderModule module,
+                                                     VkShaderModuleIdentifierEXT* identifier) {
+  const auto device = deviceOf(handle);
+  device->table.GetShaderModuleIdentifierEXT(handle, module, identifier);
+  device->addIdentifier(module, *identifier);
+}
+
+VKAPI_ATTR void VKAPI_CALL getShaderModuleCreateInfoIdentifier(VkDevice handle, const VkShaderModuleCreateInfo* info,
+                                                               VkShaderModuleIdentifierEXT* identifier) {
+  const auto device = deviceOf(handle);
+  device->table.GetShaderModuleCreateInfoIdentifierEXT(handle, info, identifier);
+  device->addIdentifier(*info, *identifier);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL createRayTracingPipelines(VkDevice handle, VkDeferredOperationKHR operation,
                                                          VkPipelineCache cache, std::uint32_t count,
                                                          const VkRayTracingPipelineCreateInfoKHR* infos,
@@ -219,11 +233,21 @@ VKAPI_ATTR void VKAPI_CALL destroyCommandPool(VkDevice handle, VkCommandPool poo
 VKAPI_ATTR VkResult VKAPI_CALL createBuffer(VkDevice handle, const VkBufferCreateInfo* info,
                                             const VkAllocationCallbacks* allocator, VkBuffer* buffer) {
   const auto entry = entryOf(handle);
-  VkBufferCreateInfo changed = *info;
-  changed.usage = TableCapture::usageFor(info->usage);
-  const VkResult result = entry->device->table.CreateBuffer(handle, &changed, allocator, buffer);
-  if (result == VK_SUCCESS) entry->tables->addBuffer(*buffer, info->size);
+  const ReadableBuffer changed(*info);
+  const VkResult result = entry->device->table.CreateBuffer(handle, &changed.info(), allocator, buffer);
+  if (result == VK_SUCCESS) entry->tables->addBuffer(*buffer, info->size, changed.usage());
   return result;
+}
+
+// The requirements must be those of the buffer that createBuffer() creates.
+VKAPI_ATTR void VKAPI_CALL getDeviceBufferMemoryRequirements(VkDevice handle,
+                                                             const VkDeviceBufferMemoryRequirements* info,
+                                                             VkMemoryRequirements2* requirements) {
+  const auto entry = entryOf(handle);
+  const ReadableBuffer changed(*info->pCreateInfo);
+  VkDeviceBufferMemoryRequirements query = *info;
+  query.pCreateInfo = &changed.info();
+  entry->device->table.GetDeviceBufferMemoryRequirements(handle, &query, requirements);
 }
 
 VKAPI_ATTR void VKAPI_CALL destroyBuffer(VkDevice handle, VkBuffer buffer, const VkAllocationCallbacks* allocator) {
@@ -269,12 +293,68 @@ VKAPI_ATTR void VKAPI_CALL cmdTraceRaysIndirect(VkCommandBuffer commands,
   entry->device->table.CmdTraceRaysIndirectKHR(commands, generation, miss, hit, callable, address);
 }
 
+VKAPI_ATTR void VKAPI_CALL cmdTraceRaysIndirect2(VkCommandBuffer commands, VkDeviceAddress address) {
+  const auto entry = entryOf(commands);
+  entry->tables->traceIndirect(commands, address);
+  entry->device->table.CmdTraceRaysIndirect2KHR(commands, address);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createAccelerationStructure(VkDevice handle,
+                                                           const VkAccelerationStructureCreateInfoKHR* info,
+                                                           const VkAllocationCallbacks* allocator,
+                                                           VkAccelerationStructureKHR* structure) {
+  const auto entry = entryOf(handle);
+  const VkResult result = entry->device->table.CreateAccelerationStructureKHR(handle, info, allocator, structure);
+  if (result == VK_SUCCESS) entry->tables->addStructure(*structure, info->type);
+  return result;
+}
+
 VKAPI_ATTR void VKAPI_CALL cmdBuildAccelerationStructures(
     VkCommandBuffer commands, std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
     const VkAccelerationStructureBuildRangeInfoKHR* const* ranges) {
   const auto entry = entryOf(commands);
   entry->tables->build(commands, count, infos, ranges);
   entry->device->table.CmdBuildAccelerationStructuresKHR(commands, count, infos, ranges);
+}
+
+VKAPI_ATTR void VKAPI_CALL cmdBuildAccelerationStructuresIndirect(
+    VkCommandBuffer commands, std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
+    const VkDeviceAddress* addresses, const std::uint32_t* strides, const std::uint32_t* const* maxima) {
+  const auto entry = entryOf(commands);
+  entry->tables->buildIndirect(count, infos);
+  entry->device->table.CmdBuildAccelerationStructuresIndirectKHR(commands, count, infos, addresses, strides, maxima);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL
+buildAccelerationStructures(VkDevice handle, VkDeferredOperationKHR operation, std::uint32_t count,
+                            const VkAccelerationStructureBuildGeometryInfoKHR* infos,
+                            const VkAccelerationStructureBuildRangeInfoKHR* const* ranges) {
+  const auto entry = entryOf(handle);
+  // The inputs must stay valid until a deferred operation is complete, so they are valid now.
+  entry->tables->buildOnHost(count, infos, ranges);
+  return entry->device->table.BuildAccelerationStructuresKHR(handle, operation, count, infos, ranges);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL copyAccelerationStructure(VkDevice handle, VkDeferredOperationKHR operation,
+                                                         const VkCopyAccelerationStructureInfoKHR* info) {
+  const auto entry = entryOf(handle);
+  entry->tables->copyStructure(info->src, info->dst);
+  return entry->device->table.CopyAccelerationStructureKHR(handle, operation, info);
+}
+
+// What a serialized structure contains is unknown.
+VKAPI_ATTR void VKAPI_CALL
+cmdCopyMemoryToAccelerationStructure(VkCommandBuffer commands, const VkCopyMemoryToAccelerationStructureInfoKHR* info) {
+  const auto entry = entryOf(commands);
+  entry->tables->forgetStructure(info->dst);
+  entry->device->table.CmdCopyMemoryToAccelerationStructureKHR(commands, info);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL copyMemoryToAccelerationStructure(
+    VkDevice handle, VkDeferredOperationKHR operation, const VkCopyMemoryToAccelerationStructureInfoKHR* info) {
+  const auto entry = entryOf(handle);
+  entry->tables->forgetStructure(info->dst);
+  return entry->device->table.CopyMemoryToAccelerationStructureKHR(handle, operation, info);
 }
 
 VKAPI_ATTR void VKAPI_CALL cmdCopyAccelerationStructure(VkCommandBuffer commands,
@@ -403,6 +483,8 @@ PFN_vkVoidFunction deviceFunction(std::string_view name, bool sbt) {
       Entry{"vkDestroyDevice", asVoid(destroyDevice)},
       Entry{"vkCreateShaderModule", asVoid(createShaderModule)},
       Entry{"vkDestroyShaderModule", asVoid(destroyShaderModule)},
+      Entry{"vkGetShaderModuleIdentifierEXT", asVoid(getShaderModuleIdentifier)},
+      Entry{"vkGetShaderModuleCreateInfoIdentifierEXT", asVoid(getShaderModuleCreateInfoIdentifier)},
       Entry{"vkCreateRayTracingPipelinesKHR", asVoid(createRayTracingPipelines)},
       Entry{"vkGetDeferredOperationResultKHR", asVoid(getDeferredOperationResult)},
       Entry{"vkDeferredOperationJoinKHR", asVoid(deferredOperationJoin)},
@@ -428,12 +510,21 @@ PFN_vkVoidFunction deviceFunction(std::string_view name, bool sbt) {
       Entry{"vkDestroyCommandPool", asVoid(destroyCommandPool)},
       Entry{"vkCreateBuffer", asVoid(createBuffer)},
       Entry{"vkDestroyBuffer", asVoid(destroyBuffer)},
+      Entry{"vkGetDeviceBufferMemoryRequirements", asVoid(getDeviceBufferMemoryRequirements)},
+      Entry{"vkGetDeviceBufferMemoryRequirementsKHR", asVoid(getDeviceBufferMemoryRequirements)},
       Entry{"vkGetBufferDeviceAddress", asVoid(getBufferDeviceAddress)},
       Entry{"vkGetBufferDeviceAddressKHR", asVoid(getBufferDeviceAddress)},
       Entry{"vkCmdTraceRaysKHR", asVoid(cmdTraceRays)},
       Entry{"vkCmdTraceRaysIndirectKHR", asVoid(cmdTraceRaysIndirect)},
+      Entry{"vkCmdTraceRaysIndirect2KHR", asVoid(cmdTraceRaysIndirect2)},
+      Entry{"vkCreateAccelerationStructureKHR", asVoid(createAccelerationStructure)},
       Entry{"vkCmdBuildAccelerationStructuresKHR", asVoid(cmdBuildAccelerationStructures)},
+      Entry{"vkCmdBuildAccelerationStructuresIndirectKHR", asVoid(cmdBuildAccelerationStructuresIndirect)},
+      Entry{"vkBuildAccelerationStructuresKHR", asVoid(buildAccelerationStructures)},
       Entry{"vkCmdCopyAccelerationStructureKHR", asVoid(cmdCopyAccelerationStructure)},
+      Entry{"vkCopyAccelerationStructureKHR", asVoid(copyAccelerationStructure)},
+      Entry{"vkCmdCopyMemoryToAccelerationStructureKHR", asVoid(cmdCopyMemoryToAccelerationStructure)},
+      Entry{"vkCopyMemoryToAccelerationStructureKHR", asVoid(copyMemoryToAccelerationStructure)},
       Entry{"vkDestroyAccelerationStructureKHR", asVoid(destroyAccelerationStructure)},
   };
   if (const PFN_vkVoidFunction found = find(kAlways, name)) return found;

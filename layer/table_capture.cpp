@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kMark = 0x51544B4Du;
 constexpr VkDeviceSize kMaxCopy = VkDeviceSize{64} << 20;  // of one region
+constexpr VkDeviceSize kMaxTable = VkDeviceSize{4} << 20;  // of a buffer that an indirect trace can use
 constexpr VkDeviceSize kAlignment = 16;
 constexpr std::string_view kUnreachable = "Q801";
 
@@ -24,6 +25,11 @@ check::TableKind kindOf(const PipelineCopy& copy, const GroupCopy& group) {
   return stage == VK_SHADER_STAGE_MISS_BIT_KHR ? check::TableKind::miss : check::TableKind::callable;
 }
 
+const VkAccelerationStructureGeometryKHR& geometryOf(const VkAccelerationStructureBuildGeometryInfoKHR& info,
+                                                     std::uint32_t g) {
+  return info.pGeometries ? info.pGeometries[g] : *info.ppGeometries[g];
+}
+
 }  // namespace
 
 TableCapture::~TableCapture() {
@@ -31,15 +37,27 @@ TableCapture::~TableCapture() {
   for (const Copy& copy : copies_) destroy(copy);
 }
 
-VkBufferUsageFlags TableCapture::usageFor(VkBufferUsageFlags usage) {
+ReadableBuffer::ReadableBuffer(const VkBufferCreateInfo& info) : info_(info), usage_(info.usage) {
   constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR |
-                                       VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
-  return (usage & kRead) != 0 ? usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT : usage;
+                                       VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+  constexpr VkBufferCreateFlags kProtected = VK_BUFFER_CREATE_PROTECTED_BIT;
+  const auto* usage2 = findInChain<Flags2>(info.pNext, kBufferUsage2);
+  if (usage2) usage_ = static_cast<VkBufferUsageFlags>(usage2->flags);
+  if ((usage_ & kRead) == 0 || (info.flags & kProtected) != 0) return;
+  if (!usage2) {
+    info_.usage = usage_ |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  } else if (usage2 == info.pNext) {  // a chain of unknown structures cannot be copied
+    usage_ |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    flags2_ = *usage2;
+    flags2_.flags |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    info_.pNext = &flags2_;
+  }
 }
 
-void TableCapture::addBuffer(VkBuffer buffer, VkDeviceSize bytes) {
+void TableCapture::addBuffer(VkBuffer buffer, VkDeviceSize bytes, VkBufferUsageFlags usage) {
   const std::scoped_lock lock(mutex_);
-  buffers_[buffer] = {bytes, 0};
+  buffers_[buffer] = {bytes, usage, 0};
 }
 
 void TableCapture::addAddress(VkBuffer buffer, VkDeviceAddress address) {
@@ -70,9 +88,9 @@ std::optional<TableCapture::Found> TableCapture::find(VkDeviceAddress address) c
   auto after = addresses_.upper_bound(address);
   if (after == addresses_.begin()) return {};
   const auto& [start, buffer] = *--after;
-  const VkDeviceSize bytes = buffers_.at(buffer).bytes;
-  if (address - start >= bytes) return {};
-  return Found{buffer, address - start, bytes - (address - start)};
+  const Buffer& found = buffers_.at(buffer);
+  if (address - start >= found.bytes) return {};
+  return Found{buffer, address - start, found.bytes - (address - start), found.readable()};
 }
 
 // Records copies of the parts, one after the other, and the mark. Returns false without memory.
@@ -136,7 +154,7 @@ void TableCapture::trace(VkCommandBuffer commands,
   Copy copy;
   copy.commands = commands;
   copy.pipeline = device_.boundPipeline(commands);
-  if (!copy.pipeline) return;
+  if (!copy.pipeline || !copy.pipeline->copy.isComplete) return;
   const std::scoped_lock lock(mutex_);
   std::vector<Part> parts;
   std::size_t at = 0;
@@ -146,6 +164,7 @@ void TableCapture::trace(VkCommandBuffer commands,
     const auto found = find(region.address);
     if (!found || region.bytes == 0) continue;
     region.available = found->available;
+    if (!found->readable) continue;
     const VkDeviceSize bytes = std::min({region.bytes, found->available, kMaxCopy});
     parts.push_back({found->buffer, found->offset, bytes});
     copy.data[i] = {at, static_cast<std::size_t>(bytes)};
@@ -154,45 +173,172 @@ void TableCapture::trace(VkCommandBuffer commands,
   if (record(copy, parts)) copies_.push_back(std::move(copy));
 }
 
+void TableCapture::traceIndirect(VkCommandBuffer commands, VkDeviceAddress address) {
+  Copy copy;
+  copy.commands = commands;
+  copy.pipeline = device_.boundPipeline(commands);
+  if (!copy.pipeline || !copy.pipeline->copy.isComplete) return;
+  const std::scoped_lock lock(mutex_);
+  const auto command = find(address);
+  if (!command || !command->readable || command->available < sizeof(VkTraceRaysIndirectCommand2KHR)) return;
+  copy.isIndirect = true;
+  std::vector<Part> parts{{command->buffer, command->offset, sizeof(VkTraceRaysIndirectCommand2KHR)}};
+  const auto aligned = [](VkDeviceSize bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; };
+  VkDeviceSize at = aligned(parts[0].bytes);
+  for (const auto& [start, buffer] : addresses_) {
+    const Buffer& table = buffers_.at(buffer);
+    const bool isTable = (table.usage & VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR) != 0;
+    if (!isTable || !table.readable() || table.bytes > kMaxTable || at + table.bytes > kMaxCopy) continue;
+    parts.push_back({buffer, 0, table.bytes});
+    copy.tables.push_back({start, table.bytes, static_cast<std::size_t>(at)});
+    at += aligned(table.bytes);
+  }
+  if (record(copy, parts)) copies_.push_back(std::move(copy));
+}
+
+// The regions of an indirect trace, from the command that the device used.
+void TableCapture::readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
+                               std::array<check::TableRegion, check::kTableKinds>& regions) const {
+  VkTraceRaysIndirectCommand2KHR command{};
+  std::memcpy(&command, bytes.data(), sizeof command);
+  regions = {
+      check::TableRegion{
+          command.raygenShaderRecordAddress, command.raygenShaderRecordSize, command.raygenShaderRecordSize, {}, {}},
+      check::TableRegion{command.missShaderBindingTableAddress,
+                         command.missShaderBindingTableStride,
+                         command.missShaderBindingTableSize,
+                         {},
+                         {}},
+      check::TableRegion{command.hitShaderBindingTableAddress,
+                         command.hitShaderBindingTableStride,
+                         command.hitShaderBindingTableSize,
+                         {},
+                         {}},
+      check::TableRegion{command.callableShaderBindingTableAddress,
+                         command.callableShaderBindingTableStride,
+                         command.callableShaderBindingTableSize,
+                         {},
+                         {}}};
+  for (check::TableRegion& region : regions) {
+    for (const CopiedTable& table : copy.tables) {
+      if (region.address < table.address || region.address - table.address >= table.bytes) continue;
+      const std::uint64_t offset = region.address - table.address;
+      region.available = table.bytes - offset;
+      const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(table.offset + offset);
+      region.data.assign(begin, begin + static_cast<std::ptrdiff_t>(std::min(region.bytes, *region.available)));
+    }
+  }
+}
+
+TableCapture::Bottom TableCapture::bottomOf(const VkAccelerationStructureBuildGeometryInfoKHR& info) {
+  Bottom bottom;
+  for (std::uint32_t g = 0; g < info.geometryCount; ++g) {
+    const VkAccelerationStructureGeometryKHR& geometry = geometryOf(info, g);
+    program::GeometryFacts facts;
+    if (geometry.geometryType == VK_GEOMETRY_TYPE_AABBS_KHR) facts.kind = program::GeometryKind::custom;
+    facts.alpha = (geometry.flags & VK_GEOMETRY_OPAQUE_BIT_KHR) == 0;
+    bottom.geometries.push_back(facts);
+  }
+  return bottom;
+}
+
+void TableCapture::addStructure(VkAccelerationStructureKHR structure, VkAccelerationStructureTypeKHR type) {
+  const std::scoped_lock lock(mutex_);
+  // The type of a generic structure is known when it is built.
+  if (type != VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) topLevel_.insert(structure);
+}
+
+void TableCapture::buildIndirect(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos) {
+  const std::scoped_lock lock(mutex_);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const VkAccelerationStructureKHR built = infos[i].dstAccelerationStructure;
+    tops_.erase(built);
+    if (infos[i].type != VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) continue;
+    bottoms_[built] = bottomOf(infos[i]);
+    topLevel_.erase(built);
+  }
+}
+
+void TableCapture::buildOnHost(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
+                               const VkAccelerationStructureBuildRangeInfoKHR* const* ranges) {
+  const std::scoped_lock lock(mutex_);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const VkAccelerationStructureBuildGeometryInfoKHR& info = infos[i];
+    if (info.type == VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) {
+      tops_.erase(info.dstAccelerationStructure);
+      topLevel_.erase(info.dstAccelerationStructure);
+      bottoms_[info.dstAccelerationStructure] = bottomOf(info);
+      continue;
+    }
+    const bool known = info.geometryCount == 1 && geometryOf(info, 0).geometryType == VK_GEOMETRY_TYPE_INSTANCES_KHR &&
+                       geometryOf(info, 0).geometry.instances.data.hostAddress;
+    if (!known) {
+      tops_.erase(info.dstAccelerationStructure);
+      continue;
+    }
+    const VkAccelerationStructureGeometryInstancesDataKHR& data = geometryOf(info, 0).geometry.instances;
+    const auto* bytes = static_cast<const std::byte*>(data.data.hostAddress) + ranges[i][0].primitiveOffset;
+    Top top{std::vector<VkAccelerationStructureInstanceKHR>(ranges[i][0].primitiveCount), true};
+    for (std::size_t k = 0; k < top.instances.size(); ++k) {
+      const void* from = bytes + k * sizeof(VkAccelerationStructureInstanceKHR);
+      if (data.arrayOfPointers) std::memcpy(&from, bytes + k * sizeof from, sizeof from);
+      std::memcpy(&top.instances[k], from, sizeof(VkAccelerationStructureInstanceKHR));
+    }
+    setTop(info.dstAccelerationStructure, std::move(top));
+  }
+}
+
+void TableCapture::forgetStructure(VkAccelerationStructureKHR structure) {
+  const std::scoped_lock lock(mutex_);
+  tops_.erase(structure);
+  bottoms_.erase(structure);
+}
+
+void TableCapture::setTop(VkAccelerationStructureKHR structure, Top top) {
+  if (const auto found = tops_.find(structure); found != tops_.end()) replaced_.push_back(std::move(found->second));
+  tops_[structure] = std::move(top);
+}
+
 void TableCapture::build(VkCommandBuffer commands, std::uint32_t count,
                          const VkAccelerationStructureBuildGeometryInfoKHR* infos,
                          const VkAccelerationStructureBuildRangeInfoKHR* const* ranges) {
   const std::scoped_lock lock(mutex_);
   for (std::uint32_t i = 0; i < count; ++i) {
     const VkAccelerationStructureBuildGeometryInfoKHR& info = infos[i];
-    const auto geometry = [&](std::uint32_t g) -> const VkAccelerationStructureGeometryKHR& {
-      return info.pGeometries ? info.pGeometries[g] : *info.ppGeometries[g];
-    };
-    tops_.erase(info.dstAccelerationStructure);
-    bottoms_.erase(info.dstAccelerationStructure);
     if (info.type == VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) {
-      Bottom bottom;
-      for (std::uint32_t g = 0; g < info.geometryCount; ++g) {
-        program::GeometryFacts facts;
-        if (geometry(g).geometryType == VK_GEOMETRY_TYPE_AABBS_KHR) facts.kind = program::GeometryKind::custom;
-        facts.alpha = (geometry(g).flags & VK_GEOMETRY_OPAQUE_BIT_KHR) == 0;
-        bottom.geometries.push_back(facts);
-      }
-      bottoms_[info.dstAccelerationStructure] = std::move(bottom);
+      tops_.erase(info.dstAccelerationStructure);
+      topLevel_.erase(info.dstAccelerationStructure);
+      bottoms_[info.dstAccelerationStructure] = bottomOf(info);
       continue;
     }
-    if (info.geometryCount != 1 || geometry(0).geometryType != VK_GEOMETRY_TYPE_INSTANCES_KHR ||
-        geometry(0).geometry.instances.arrayOfPointers)
+    // The instances of the last build count until this one is complete, unless they stay unknown.
+    const auto forget = [&] { tops_.erase(info.dstAccelerationStructure); };
+    if (info.geometryCount != 1 || geometryOf(info, 0).geometryType != VK_GEOMETRY_TYPE_INSTANCES_KHR ||
+        geometryOf(info, 0).geometry.instances.arrayOfPointers) {
+      forget();
       continue;
+    }
     Copy copy;
     copy.commands = commands;
     copy.structure = info.dstAccelerationStructure;
     copy.instances = ranges[i][0].primitiveCount;
     const VkDeviceSize bytes = copy.instances * sizeof(VkAccelerationStructureInstanceKHR);
-    const auto found = find(geometry(0).geometry.instances.data.deviceAddress + ranges[i][0].primitiveOffset);
-    if (!found || bytes == 0 || bytes > std::min(found->available, kMaxCopy)) continue;
-    if (record(copy, {{found->buffer, found->offset, bytes}})) copies_.push_back(std::move(copy));
+    const auto found = find(geometryOf(info, 0).geometry.instances.data.deviceAddress + ranges[i][0].primitiveOffset);
+    const bool known = found && found->readable && bytes > 0 && bytes <= std::min(found->available, kMaxCopy);
+    if (known && record(copy, {{found->buffer, found->offset, bytes}}))
+      copies_.push_back(std::move(copy));
+    else
+      forget();
   }
 }
 
 void TableCapture::copyStructure(VkAccelerationStructureKHR from, VkAccelerationStructureKHR to) {
   const std::scoped_lock lock(mutex_);
-  if (const auto found = bottoms_.find(from); found != bottoms_.end()) bottoms_[to] = found->second;
+  tops_.erase(to);
+  if (const auto found = bottoms_.find(from); found != bottoms_.end()) {
+    bottoms_[to] = found->second;
+    topLevel_.erase(to);
+  }
   if (const auto found = tops_.find(from); found != tops_.end()) tops_[to] = found->second;
 }
 
@@ -200,6 +346,7 @@ void TableCapture::removeStructure(VkAccelerationStructureKHR structure) {
   const std::scoped_lock lock(mutex_);
   bottoms_.erase(structure);
   tops_.erase(structure);
+  topLevel_.erase(structure);
 }
 
 void TableCapture::addCommands(VkCommandPool pool, std::uint32_t count, const VkCommandBuffer* commands) {
@@ -243,6 +390,8 @@ void TableCapture::poll() {
   std::stable_partition(complete.begin(), complete.end(),
                         [](const auto& entry) { return entry.first.pipeline == nullptr; });
   for (auto& [copy, bytes] : complete) finish(std::move(copy), std::move(bytes));
+  const std::scoped_lock lock(mutex_);
+  replaced_.clear();
 }
 
 void TableCapture::finish(Copy copy, std::vector<std::byte> bytes) {
@@ -253,16 +402,17 @@ void TableCapture::finish(Copy copy, std::vector<std::byte> bytes) {
 }
 
 void TableCapture::finishBuild(const Copy& copy, const std::vector<std::byte>& bytes) {
-  std::vector<VkAccelerationStructureInstanceKHR> instances(copy.instances);
-  std::memcpy(instances.data(), bytes.data(),
-              std::min(bytes.size(), instances.size() * sizeof(VkAccelerationStructureInstanceKHR)));
+  Top top{std::vector<VkAccelerationStructureInstanceKHR>(copy.instances), false};
+  std::memcpy(top.instances.data(), bytes.data(),
+              std::min(bytes.size(), top.instances.size() * sizeof(VkAccelerationStructureInstanceKHR)));
   const std::scoped_lock lock(mutex_);
-  tops_[copy.structure] = std::move(instances);
+  setTop(copy.structure, std::move(top));
 }
 
 void TableCapture::finishTrace(const Copy& copy, const std::vector<std::byte>& bytes) {
   std::array<check::TableRegion, check::kTableKinds> regions = copy.regions;
-  for (std::size_t i = 0; i < check::kTableKinds; ++i) {
+  if (copy.isIndirect) readCommand(copy, bytes, regions);
+  for (std::size_t i = 0; !copy.isIndirect && i < check::kTableKinds; ++i) {
     const auto [offset, count] = copy.data[i];
     regions[i].data.assign(bytes.begin() + static_cast<std::ptrdiff_t>(offset),
                            bytes.begin() + static_cast<std::ptrdiff_t>(offset + count));
@@ -304,6 +454,10 @@ const std::vector<check::TableGroup>& TableCapture::groupsOf(LinkedPipeline& pip
 
 // Links the pipeline again with the table and the instances. Reports what the link without them could not know.
 void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& found) {
+  // The rules compare traces with records, and shaders with one another.
+  if (std::ranges::any_of(found.records,
+                          [](const auto& records) { return records.size() > check::kMaxTableWithoutGaps; }))
+    return;
   const std::vector<check::TableGroup>& table = groupsOf(pipeline);
   check::PipelineGroups groups = pipeline.groups;
   std::string key = fmt::format("{:#x}", numberOf(pipeline.handle));
@@ -328,47 +482,70 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   select(check::TableKind::callable, groups.callables);
   for (program::HitGroup& hit : groups.hitGroups) hit.shaders.try_emplace("");
   groups.tablesKnown = true;
-  addInstances(groups);
-  if (groups.instances)
-    for (const check::InstanceRecords& instance : *groups.instances)
+  const std::vector<check::PipelineGroups> states = withInstances(groups);
+  for (const check::PipelineGroups& state : states) {
+    key += " |";
+    for (const check::InstanceRecords& instance : state.instances.value_or(std::vector<check::InstanceRecords>{}))
       key += fmt::format(" {}:{}:{}", instance.recordOffset, instance.facts.mask, instance.facts.geometryCount);
+  }
   {
     const std::scoped_lock lock(mutex_);
     if (!linked_.insert(key).second) return;
   }
-  const std::vector<Diagnostic>& known = pipeline.result.diagnostics;
-  std::vector<Diagnostic> added = check::checkModules(groups, pipeline.modules, device_.limits).diagnostics;
+  const auto has = [](const std::vector<Diagnostic>& list, const Diagnostic& d) {
+    return std::ranges::any_of(
+        list, [&](const Diagnostic& k) { return k.id == d.id && k.file == d.file && k.line == d.line; });
+  };
   // A table need not reach all stages: a pipeline can be for more than one scene.
+  std::vector<Diagnostic> added = check::checkModules(states.front(), pipeline.modules, device_.limits).diagnostics;
   std::erase_if(added, [&](const Diagnostic& d) {
-    return d.id == kUnreachable || std::ranges::any_of(known, [&](const Diagnostic& k) {
-             return k.id == d.id && k.file == d.file && k.line == d.line;
-           });
+    return d.id == kUnreachable || d.severity == Severity::note || has(pipeline.result.diagnostics, d);
   });
+  // What holds for only one of several possible states of the instances is not certain.
+  for (std::size_t i = 1; i < states.size() && !added.empty(); ++i) {
+    const auto other = check::checkModules(states[i], pipeline.modules, device_.limits).diagnostics;
+    std::erase_if(added, [&](const Diagnostic& d) { return !has(other, d); });
+  }
   check::Suppressions(pipeline.sources).apply(added);
   device_.report(std::move(added), pipeline);
 }
 
 // Only if there is one top-level structure: which one a trace uses is in the descriptors.
-void TableCapture::addInstances(check::PipelineGroups& groups) {
+std::vector<check::PipelineGroups> TableCapture::withInstances(const check::PipelineGroups& groups) {
+  constexpr std::size_t kMaxStates = 4;
   const std::scoped_lock lock(mutex_);
-  if (tops_.size() != 1) return;
+  if (topLevel_.size() != 1 || !tops_.contains(*topLevel_.begin()) || replaced_.size() >= kMaxStates) return {groups};
+  std::vector<check::PipelineGroups> states;
+  std::vector<const Top*> tops{&tops_.at(*topLevel_.begin())};
+  for (const Top& top : replaced_) tops.push_back(&top);
+  for (const Top* top : tops) {
+    states.push_back(groups);
+    if (!addInstances(*top, states.back())) return {groups};
+  }
+  return states;
+}
+
+// Returns false if it is unknown what an instance refers to.
+bool TableCapture::addInstances(const Top& top, check::PipelineGroups& groups) {
   std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>> ranges;  // by address
   for (const auto& [structure, bottom] : bottoms_) {
     VkAccelerationStructureDeviceAddressInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
     info.accelerationStructure = structure;
-    const VkDeviceAddress address = device_.table.GetAccelerationStructureDeviceAddressKHR(device_.handle, &info);
-    ranges[address] = {static_cast<std::uint32_t>(groups.geometries.size()),
-                       static_cast<std::uint32_t>(bottom.geometries.size())};
+    const std::uint64_t reference = top.refersToHandles
+                                        ? numberOf(structure)
+                                        : device_.table.GetAccelerationStructureDeviceAddressKHR(device_.handle, &info);
+    ranges[reference] = {static_cast<std::uint32_t>(groups.geometries.size()),
+                         static_cast<std::uint32_t>(bottom.geometries.size())};
     groups.geometries.insert(groups.geometries.end(), bottom.geometries.begin(), bottom.geometries.end());
   }
   std::vector<check::InstanceRecords> instances;
-  for (const VkAccelerationStructureInstanceKHR& raw : tops_.begin()->second) {
+  for (const VkAccelerationStructureInstanceKHR& raw : top.instances) {
     if (raw.accelerationStructureReference == 0) continue;  // inactive
     const auto range = ranges.find(raw.accelerationStructureReference);
-    if (range == ranges.end()) return;  // built elsewhere
+    if (range == ranges.end()) return false;  // built elsewhere
     check::InstanceRecords instance;
-    instance.facts.name = std::to_string(&raw - tops_.begin()->second.data());
+    instance.facts.name = std::to_string(&raw - top.instances.data());
     instance.facts.firstGeometry = range->second.first;
     instance.facts.geometryCount = range->second.second;
     instance.facts.mask = raw.mask;
@@ -381,6 +558,7 @@ void TableCapture::addInstances(check::PipelineGroups& groups) {
     instances.push_back(std::move(instance));
   }
   groups.instances = std::move(instances);
+  return true;
 }
 
 }  // namespace quintet::layer

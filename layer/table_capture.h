@@ -19,9 +19,25 @@
 #include <unordered_map>
 #include <vector>
 
+#include "chains.h"
 #include "device.h"
 
 namespace quintet::layer {
+
+// The create info of a buffer whose content the layer must be able to copy: shader binding tables, instances of acceleration
+// structures, and arguments of indirect traces get TRANSFER_SRC. `info` must outlive this object.
+class ReadableBuffer {
+ public:
+  explicit ReadableBuffer(const VkBufferCreateInfo& info);
+  ReadableBuffer(const ReadableBuffer&) = delete;
+  const VkBufferCreateInfo& info() const { return info_; }
+  VkBufferUsageFlags usage() const { return usage_; }
+
+ private:
+  VkBufferCreateInfo info_;
+  Flags2 flags2_{};
+  VkBufferUsageFlags usage_;
+};
 
 class TableCapture {
  public:
@@ -29,9 +45,7 @@ class TableCapture {
   ~TableCapture();  // the device is idle
   TableCapture(const TableCapture&) = delete;
 
-  // Buffers of these usages must be readable by copies.
-  static VkBufferUsageFlags usageFor(VkBufferUsageFlags usage);
-  void addBuffer(VkBuffer buffer, VkDeviceSize bytes);
+  void addBuffer(VkBuffer buffer, VkDeviceSize bytes, VkBufferUsageFlags usage);
   void addAddress(VkBuffer buffer, VkDeviceAddress address);
   void removeBuffer(VkBuffer buffer);
 
@@ -39,10 +53,18 @@ class TableCapture {
 
   // Before a trace. The regions are in the order of check::TableKind.
   void trace(VkCommandBuffer commands, const std::array<VkStridedDeviceAddressRegionKHR, check::kTableKinds>& regions);
+  // Before a trace whose regions are in device memory, as VkTraceRaysIndirectCommand2KHR: copies it, and all small buffers
+  // that can be shader binding tables.
+  void traceIndirect(VkCommandBuffer commands, VkDeviceAddress address);
+  void addStructure(VkAccelerationStructureKHR structure, VkAccelerationStructureTypeKHR type);
   // Before builds of acceleration structures.
   void build(VkCommandBuffer commands, std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
              const VkAccelerationStructureBuildRangeInfoKHR* const* ranges);
+  void buildIndirect(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos);
+  void buildOnHost(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
+                   const VkAccelerationStructureBuildRangeInfoKHR* const* ranges);
   void copyStructure(VkAccelerationStructureKHR from, VkAccelerationStructureKHR to);
+  void forgetStructure(VkAccelerationStructureKHR structure);  // its content is unknown
   void removeStructure(VkAccelerationStructureKHR structure);
 
   void addCommands(VkCommandPool pool, std::uint32_t count, const VkCommandBuffer* commands);
@@ -55,7 +77,15 @@ class TableCapture {
  private:
   struct Buffer {
     VkDeviceSize bytes = 0;
+    VkBufferUsageFlags usage = 0;
     VkDeviceAddress address = 0;  // 0 if it was not queried
+    bool readable() const { return (usage & VK_BUFFER_USAGE_TRANSFER_SRC_BIT) != 0; }
+  };
+  // A buffer that can have a shader binding table, in a copy.
+  struct CopiedTable {
+    VkDeviceAddress address = 0;
+    VkDeviceSize bytes = 0;  // of the buffer
+    std::size_t offset = 0;  // in the copy
   };
   struct Part {  // of a copy
     VkBuffer source = VK_NULL_HANDLE;
@@ -71,6 +101,8 @@ class TableCapture {
     std::shared_ptr<LinkedPipeline> pipeline;
     std::array<check::TableRegion, check::kTableKinds> regions;
     std::array<std::pair<std::size_t, std::size_t>, check::kTableKinds> data;  // offset and bytes in `mapped`
+    bool isIndirect = false;                                                   // the copy starts with the command
+    std::vector<CopiedTable> tables;                                           // of an indirect trace
     // Of a build.
     VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
     std::size_t instances = 0;
@@ -78,9 +110,14 @@ class TableCapture {
   struct Bottom {
     std::vector<program::GeometryFacts> geometries;
   };
+  struct Top {
+    std::vector<VkAccelerationStructureInstanceKHR> instances;
+    bool refersToHandles = false;  // built on the host: accelerationStructureReference is a handle, not an address
+  };
   struct Found {  // by buffer
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceSize offset = 0, available = 0;
+    bool readable = false;
   };
 
   std::optional<Found> find(VkDeviceAddress address) const;
@@ -90,8 +127,14 @@ class TableCapture {
   void finishTrace(const Copy& copy, const std::vector<std::byte>& bytes);
   void finishBuild(const Copy& copy, const std::vector<std::byte>& bytes);
   const std::vector<check::TableGroup>& groupsOf(LinkedPipeline& pipeline);
+  void readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
+                   std::array<check::TableRegion, check::kTableKinds>& regions) const;
   void link(LinkedPipeline& pipeline, const check::TableFindings& found);
-  void addInstances(check::PipelineGroups& groups);
+  static Bottom bottomOf(const VkAccelerationStructureBuildGeometryInfoKHR& info);
+  void setTop(VkAccelerationStructureKHR structure, Top top);
+  // What rays can hit, one entry per state that the only top-level structure can have had at the trace. Empty if unknown.
+  std::vector<check::PipelineGroups> withInstances(const check::PipelineGroups& groups);
+  bool addInstances(const Top& top, check::PipelineGroups& groups);
 
   Device& device_;
   std::mutex mutex_;
@@ -100,7 +143,9 @@ class TableCapture {
   std::list<Copy> copies_;
   std::unordered_map<VkCommandBuffer, VkCommandPool> pools_;
   std::unordered_map<VkAccelerationStructureKHR, Bottom> bottoms_;
-  std::unordered_map<VkAccelerationStructureKHR, std::vector<VkAccelerationStructureInstanceKHR>> tops_;
+  std::unordered_map<VkAccelerationStructureKHR, Top> tops_;
+  std::set<VkAccelerationStructureKHR> topLevel_;  // all that exist, also those whose instances are unknown
+  std::vector<Top> replaced_;                      // by builds that were completed together with the traces
   std::unordered_map<VkPipeline, std::vector<check::TableGroup>> groups_;
   std::set<std::string> linked_;  // tables that were already linked
 };

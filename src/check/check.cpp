@@ -324,9 +324,15 @@ CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> mod
   result.diagnostics = report.take();
   std::ranges::for_each(result.diagnostics, nameIds);
   for (std::size_t i = 0; i < modules.size(); ++i)
-    if (!graph.stages[i].facts && modules[i].problem.empty())
+    if (const PipelineStage& stage = graph.stages[i]; !stage.problem.empty() && modules[i].problem.empty())
       result.diagnostics.push_back(
-          {Severity::note, modules[i].name, 0, 0, "", "not checked: " + graph.stages[i].problem, {}});
+          {Severity::note,
+           modules[i].name,
+           0,
+           0,
+           "",
+           (stage.facts ? "only its types and arguments are checked, because " : "not checked: ") + stage.problem,
+           {}});
   result.seconds = clock.seconds();
   return result;
 }

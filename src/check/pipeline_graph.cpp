@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "check/swapped_arguments.h"
 #include "spirv/glsl_declaration.h"
+#include "spirv/plain_code.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -63,8 +64,29 @@ void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(st
   });
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (!stages[i].facts) stages[i].problem = errors[i];
-    if (!stages[i].facts && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);
+    if (stages[i].facts && !usesLibrary)
+      if (const std::string_view trace = spirv::otherTrace(stages[i].facts->module()); !trace.empty())
+        stages[i].problem = errors[i] = fmt::format("the shaders that {} runs are unknown", trace);
+    if (!errors[i].empty() && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);
+  }
+  compareRecords();
+  for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].facts) addTraces(i), addCalls(i);
+}
+
+void PipelineGraph::compareRecords() {
+  const spirv::TraceFacts* first = nullptr;
+  const auto same = [](const spirv::ArgumentValues& a, const spirv::ArgumentValues& b) {
+    return a.exact() && b.exact() && a.values == b.values;
+  };
+  for (const PipelineStage& stage : stages) {
+    if (!stage.facts) continue;
+    for (const spirv::TraceFacts& trace : stage.facts->traces()) {
+      if (!first) first = &trace;
+      if (first == &trace) continue;
+      if (!same(first->offset, trace.offset) || !same(first->stride, trace.stride)) sameHitRecords_ = false;
+      if (!same(first->miss, trace.miss)) sameMissRecord_ = false;
+    }
   }
 }
 
@@ -127,8 +149,8 @@ void PipelineGraph::addTraces(std::size_t stage) {
 void PipelineGraph::addMisses(TraceSite& site) {
   const spirv::ArgumentValues& miss = site.trace->miss;
   const std::vector<program::MissShader>& misses = groups.misses;
-  site.assumesMisses = !groups.tablesKnown && misses.size() > 1;
-  const bool only = !groups.tablesKnown && misses.size() == 1;
+  const bool only = !groups.tablesKnown && misses.size() == 1 && sameMissRecord_;
+  site.assumesMisses = !groups.tablesKnown && !misses.empty() && !only;
   for (std::size_t i = 0; i < misses.size(); ++i) {
     const bool reached = !groups.tablesKnown || !miss.known ||
                          std::ranges::any_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
@@ -161,7 +183,8 @@ void PipelineGraph::addHitsByRecord(TraceSite& site) {
   const bool known = groups.tablesKnown && groups.instances && trace.offset.known && trace.stride.known;
   for (std::size_t group = 0; group < groups.hitGroups.size(); ++group)
     if (!known || records.contains(group)) addHit(site, {group, 0}, known ? trace.offset.certain() : true);
-  site.assumesHits = !known && site.hits.size() > 1;
+  const bool others = !groups.tablesKnown && !sameHitRecords_ && !site.hits.empty();  // records without shaders
+  site.assumesHits = !known && (site.hits.size() > 1 || others);
   if (!site.assumesHits) return;
   for (Edge& edge : site.edges)
     if (edge.role != Role::miss) edge.exact = false;

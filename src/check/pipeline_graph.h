@@ -31,13 +31,14 @@ struct ModuleStage {
   shader::Stage kind = shader::Stage::rayGeneration;
   std::vector<std::uint32_t> spirv;  // one entry point, optimized (shader/optimizer.h)
   std::string problem;               // why there is no SPIR-V; empty if there is
+  bool malformed = false;  // the problem is a mistake of the module, not something that is unknown to SPIRV-Tools
 };
 
 struct PipelineStage {
   std::string file;  // as in PipelineGroups
   shader::Stage kind = shader::Stage::rayGeneration;
   std::unique_ptr<spirv::StageFacts> facts;  // null if the module cannot be analyzed
-  std::string problem = {};                  // why not
+  std::string problem = {};                  // why not, or what of it is not followed
 };
 
 // A hit group for one ray type: indices in PipelineGroups::hitGroups and PipelineGroups::rays.
@@ -63,7 +64,8 @@ struct TraceSite {
   std::vector<Edge> edges;
   std::vector<HitGroupRay> hits;     // that a hit can use
   std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
-  // One of the hit groups or miss shaders runs, but it is unknown which one: the layout of the table is unknown.
+  // One of the hit groups or miss shaders runs, or a record without shaders, but it is unknown which one: the layout of the
+  // table is unknown.
   bool assumesHits = false, assumesMisses = false;
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
 };
@@ -85,7 +87,7 @@ struct PipelineGraph {
   std::vector<PipelineStage> stages;
   std::vector<TraceSite> traces;
   std::vector<CallSite> calls;
-  std::string error;  // first module that cannot be analyzed, and the reason; empty if all can
+  std::string error;  // first module that cannot be analyzed completely, and the reason; empty if all can
 
   std::size_t rayCount() const { return groups.rays.size(); }
   const PipelineStage* stage(const std::string& file) const;  // null if unknown
@@ -131,10 +133,13 @@ struct PipelineGraph {
   std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
   Context context_;
   bool hasParameters_ = false;
+  // Without a known table: all traces use the same records, so a single hit group or miss shader is that of each trace.
+  bool sameHitRecords_ = true, sameMissRecord_ = true;
   mutable std::vector<std::unique_ptr<DefaultRanges>> defaults_;  // by stage
 
   // Reads module i, which `words` returns, if it is not empty.
   void readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words, std::vector<std::string> errors);
+  void compareRecords();
   void addTraces(std::size_t stage);
   void addCalls(std::size_t stage);
   void addMisses(TraceSite& site);

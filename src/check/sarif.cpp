@@ -61,7 +61,7 @@ class SarifRun {
       result["relatedLocations"].push_back(std::move(location));
     }
     if (suppressed) {
-      Json entry{{"kind", "inSource"}};
+      Json entry{{"kind", suppressed->inSource ? "inSource" : "external"}};
       if (!suppressed->reason.empty()) entry["justification"] = suppressed->reason;
       const SourceLocation& comment = suppressed->comment;
       entry["location"] = locationOf(comment.file, comment.line, comment.column);

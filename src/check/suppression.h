@@ -27,8 +27,9 @@ std::vector<Suppression> findSuppressions(const std::string& file, std::string_v
 
 struct SuppressedDiagnostic {
   Diagnostic diagnostic;
-  SourceLocation comment;
+  SourceLocation comment;  // or the line of the list
   std::string reason;
+  bool inSource = true;  // false if a list accepts it (modules/suppression_list.h)
 };
 
 class Suppressions {

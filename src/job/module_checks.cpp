@@ -74,14 +74,6 @@ Diagnostic errorIn(const std::string& file, std::string text) {
   return d;
 }
 
-// SPIRV-Tools reports what it does not know as an invalid operand or opcode.
-bool isUnknownToTools(const std::string& problem) {
-  if (problem.find("Invalid opcode") != problem.npos || problem.find("nvalid extended instruction") != problem.npos)
-    return true;
-  const std::size_t at = problem.find("Invalid ");
-  return at != problem.npos && problem.find(" operand: ", at) != problem.npos;
-}
-
 class ModuleSet {
  public:
   explicit ModuleSet(const std::vector<std::string>& names, std::vector<Diagnostic>& problems) {
@@ -142,8 +134,14 @@ class ModuleSet {
   std::vector<ModuleFile> files_;
 };
 
+// "lib.spv#name"; "lib.spv#main (miss)" if entry points of different stages have the same name, as those of Slang.
 std::string stageName(const ModuleFile& module, const spirv::EntryPoint& entry) {
-  return module.summary.entryPoints.size() > 1 ? module.path + "#" + entry.name : module.path;
+  const std::vector<spirv::EntryPoint>& all = module.summary.entryPoints;
+  if (all.size() < 2) return module.path;
+  const std::string name = module.path + "#" + entry.name;
+  return std::ranges::count(all, entry.name, &spirv::EntryPoint::name) < 2
+             ? name
+             : fmt::format("{} ({})", name, shader::stageName(*check::stageOf(entry.stage)));
 }
 
 // Finds the stages of a described pipeline, and names them by their files.
@@ -215,8 +213,8 @@ std::vector<check::ModuleStage> stagesOf(const std::vector<StagePlan>& plans) {
 }
 
 void checkPipeline(ProgramReport& report, check::PipelineGroups groups, const std::vector<StagePlan>& plans,
-                   const std::vector<check::ModuleStage>& stages, const check::DeviceLimits& limits) {
-  report.result = check::checkModules(std::move(groups), stages, limits);
+                   const std::vector<check::ModuleStage>& stages, const check::DeviceLimits& limits, bool describe) {
+  report.result = check::checkModules(groups, stages, limits);
   for (const StagePlan& plan : plans) {
     report.sources.insert(plan.module->summary.sources.begin(), plan.module->summary.sources.end());
     report.files.emplace_back(plan.module->path);
@@ -224,13 +222,13 @@ void checkPipeline(ProgramReport& report, check::PipelineGroups groups, const st
   report.result.suppressed = check::Suppressions(report.sources).apply(report.result.diagnostics);
   for (const check::ModuleStage& stage : stages) {
     if (stage.problem.empty()) continue;
-    const bool unknown = isUnknownToTools(stage.problem);
-    Diagnostic d = errorIn(stage.name, (unknown ? "not checked, because SPIRV-Tools does not know what it uses: "
-                                                : "this is not a valid SPIR-V module: ") +
+    Diagnostic d = errorIn(stage.name, (stage.malformed ? "this is not a valid SPIR-V module: "
+                                                        : "not checked, because SPIRV-Tools cannot process it: ") +
                                            printable(stage.problem));
-    if (unknown) d.severity = Severity::note;
+    if (!stage.malformed) d.severity = Severity::note;
     report.result.diagnostics.push_back(std::move(d));
   }
+  if (describe) report.model = check::describeModules(report.name, std::move(groups), stages, report.result);
 }
 
 class ModuleChecks {
@@ -278,7 +276,7 @@ class ModuleChecks {
       try {
         check::PipelineGroups groups = pipeline.groups;
         const std::vector<StagePlan> plans = StageFinder(request_.groups, modules, pipeline).find(groups);
-        checkPipeline(report, std::move(groups), plans, stagesOf(plans), limits_);
+        checkPipeline(report, std::move(groups), plans, stagesOf(plans), limits_, request_.describe);
       } catch (const FileError& error) {
         report.result.diagnostics.push_back(asDiagnostic(error));
       }
@@ -298,7 +296,7 @@ class ModuleChecks {
     for (const auto& [folder, plans] : folders) {
       const std::vector<check::ModuleStage> stages = stagesOf(plans);
       ProgramReport& report = start(!folder.empty() ? folder : plans.size() == 1 ? plans[0].name : "modules");
-      checkPipeline(report, check::groupsOfStages(stages), plans, stages, limits_);
+      checkPipeline(report, check::groupsOfStages(stages), plans, stages, limits_, request_.describe);
       observer_.finished(all_);
     }
   }

@@ -19,6 +19,7 @@ struct ModuleCheckRequest {
   // only the stages are known.
   std::filesystem::path groups;
   std::string device;  // whose limits and driver defects count: limitsOfDevice(); empty for limits that hold everywhere
+  bool describe = false;  // also describe how the shaders connect: ProgramReport::model
 };
 
 // Returns a report per pipeline. A file that cannot be read and a mistake in groups.json are diagnostics. A module with

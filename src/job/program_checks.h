@@ -38,6 +38,7 @@ struct ProgramReport {
   check::CheckResult result;
   std::vector<std::filesystem::path> files;    // on disk, that the result depends on
   std::map<std::string, std::string> sources;  // texts that SPIR-V modules contain, by file (module_checks.h)
+  std::optional<check::PipelineModel> model;   // of raw modules, on request (ModuleCheckRequest::describe)
   bool wrongRequest = false;                   // the program is unknown, or a parameter is invalid
 };
 

@@ -55,7 +55,8 @@ void WatchList::addProgram(const fs::path& name) {
 
 void SourceWatcher::watch(WatchList list) {
   list_ = std::move(list);
-  watcher_.watch(list_.files, list_.folders, isProgramSource);
+  const auto all = [](const fs::path& file) { return !file.filename().string().starts_with('.'); };  // temporary files
+  watcher_.watch(list_.files, list_.folders, list_.anyFile ? shader::FileWatcher::Filter(all) : isProgramSource);
 }
 
 Files SourceWatcher::wait(double seconds) {

@@ -16,6 +16,7 @@ namespace quintet::job {
 struct WatchList {
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> folders;  // of programs: all files isProgramSource() there, also new ones
+  bool anyFile = false;                        // in the folders, all files count
 
   void addFile(const std::filesystem::path& file);  // unless the list has it
   void addFiles(const std::vector<std::filesystem::path>& added);

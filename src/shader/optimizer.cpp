@@ -2,8 +2,10 @@
 #include "shader/optimizer.h"
 
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
+#include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 
 #include "base/error.h"
@@ -35,10 +37,28 @@ void registerSpecialization(spvtools::Optimizer& optimizer, const Specialization
       .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
 }
 
+spvtools::ValidatorOptions validatorOptions() {
+  spvtools::ValidatorOptions options;
+  options.SetFriendlyNames(false);   // making names takes longer than the validation
+  options.SetSkipBlockLayout(true);  // it depends on the features of the device
+  return options;
+}
+
+// Only what the analyses cannot do without: one function in SSA form.
+void registerInlining(spvtools::Optimizer& optimizer) {
+  optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreateInlineExhaustivePass())
+      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass(false));
+}
+
+enum class Passes { all, inlining, reductions };
+
 // `untrusted`: validates after each pass. Some passes of SPIRV-Tools 2023.1 make valid modules invalid, with which later passes
 // crash (VectorDCE).
 std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo, bool untrusted,
-                               const std::optional<SpecializationValues>& values) {
+                               const std::optional<SpecializationValues>& values, Passes passes = Passes::all) {
   std::vector<std::uint32_t> result;
   std::string message;
   bool succeeded = false;
@@ -50,13 +70,12 @@ std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool deb
     optimizer.SetValidateAfterAll(untrusted);
     if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     if (values) registerSpecialization(optimizer, *values);
-    registerReductions(optimizer);
-    optimizer.RegisterPerformancePasses();
-    spvtools::ValidatorOptions validation;
-    validation.SetFriendlyNames(false);   // making names takes longer than the validation
-    validation.SetSkipBlockLayout(true);  // it depends on the features of the device
+    if (passes == Passes::inlining) registerInlining(optimizer);
+    if (passes != Passes::inlining) registerReductions(optimizer);
+    if (passes == Passes::all) optimizer.RegisterPerformancePasses();
     spvtools::OptimizerOptions options;
-    options.set_validator_options(validation);
+    options.set_run_validator(passes != Passes::reductions);
+    options.set_validator_options(validatorOptions());
     succeeded = optimizer.Run(words.data(), words.size(), &result, options);
   });
   if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));
@@ -108,7 +127,38 @@ std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, boo
 
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
                                                const std::optional<SpecializationValues>& values) {
-  return run(words, true, true, values);
+  try {
+    return run(words, true, true, values);
+  } catch (const Error&) {
+    if (!validate(words).text.empty()) throw;
+    return run(words, true, true, values, Passes::inlining);
+  }
+}
+
+std::vector<std::uint32_t> reduceUnvalidated(const std::vector<std::uint32_t>& words) {
+  return run(words, true, false, {}, Passes::reductions);
+}
+
+ValidationProblem validate(const std::vector<std::uint32_t>& words) {
+  ValidationProblem problem;
+  runOnDeepStack(stackBytesFor(words.size() * sizeof(std::uint32_t)), [&] {
+    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+    tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& at, const char* text) {
+      const std::string_view message = text;
+      if (message.find("unrecognized extension") != message.npos) problem.unknown = true;
+      if (level <= SPV_MSG_ERROR && problem.text.empty()) problem.text = message, problem.instruction = at.index;
+    });
+    if (tools.Validate(words.data(), words.size(), validatorOptions())) problem.text.clear();
+  });
+  // What SPIRV-Tools does not know is an invalid operand or opcode to it.
+  const std::string& text = problem.text;
+  const auto has = [&](std::string_view part) { return text.find(part) != text.npos; };
+  const std::size_t invalid = text.find("Invalid ");
+  problem.unknown = problem.unknown || has("Invalid opcode") || has("nvalid extended instruction") ||
+                    has("is not allowed by Vulkan") || has("Invalid SPIR-V binary version") ||
+                    (invalid != text.npos && text.find(" operand: ", invalid) != text.npos);
+  if (text.empty()) problem.unknown = false;
+  return problem;
 }
 
 }  // namespace quintet::shader

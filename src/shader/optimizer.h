@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -25,9 +26,20 @@ using SpecializationValues = std::unordered_map<std::uint32_t, std::vector<std::
 std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, const SpecializationValues& values);
 
 // As `optimize`, for SPIR-V of unknown origin. With `values`, all specialization constants become constants: those that are
-// missing there have their defaults. Without, they stay unknown.
+// missing there have their defaults. Without, they stay unknown. If a pass fails for a valid module, functions are only inlined.
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
                                                const std::optional<SpecializationValues>& values);
+
+// Only replaces variables by values and removes dead code, without validation.
+std::vector<std::uint32_t> reduceUnvalidated(const std::vector<std::uint32_t>& words);
+
+// Why SPIRV-Tools rejects a module.
+struct ValidationProblem {
+  std::string text;      // empty if the module is valid
+  bool unknown = false;  // it uses a version, capability, extension or instruction that SPIRV-Tools does not know
+  std::size_t instruction = 0;  // its number, from 1
+};
+ValidationProblem validate(const std::vector<std::uint32_t>& words);
 
 }  // namespace quintet::shader
 #endif

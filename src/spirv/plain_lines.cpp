@@ -21,6 +21,7 @@ using spv::Op;
 using Words = std::span<const std::uint32_t>;
 
 constexpr std::size_t kHeaderWords = 5, kMaxInstruction = 65535;
+constexpr auto kForwardReferences = static_cast<Op>(4433);  // OpExtInstWithForwardRefsKHR, of Slang
 constexpr std::string_view kDebugInfoSet = "NonSemantic.Shader.DebugInfo.100";
 
 struct Location {
@@ -63,7 +64,7 @@ class Converter {
   static std::uint32_t at(Words operands, std::size_t i) { return i < operands.size() ? operands[i] : 0; }
 
   bool isDebugInfo(Op op, Words operands) const {
-    return op == Op::OpExtInst && operands.size() > 3 && sets_.contains(operands[2]);
+    return (op == Op::OpExtInst || op == kForwardReferences) && operands.size() > 3 && sets_.contains(operands[2]);
   }
 
   void collect(Op op, Words operands) {

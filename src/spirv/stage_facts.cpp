@@ -282,7 +282,7 @@ bool StageFacts::onlyStoredTo(Id variable, const Instruction& use) const {
 }
 
 // A leaf that a store puts back unchanged is not written: this is how `inout` parameters compile. A leaf that the store
-// moves to a different one is read.
+// moves to a different one is read. A leaf of a local variable that was never set is not written.
 void StageFacts::addStore(std::size_t index, Id variable, const Access& target, LeafRange range, Id value) {
   const Leaves& all = leaves(variable);
   const auto write = [&](std::uint32_t leaf) {
@@ -301,6 +301,7 @@ void StageFacts::addStore(std::size_t index, Id variable, const Access& target, 
     const Path rest(path.begin() + static_cast<std::ptrdiff_t>(target.indices.size()), path.end());
     const ValuePart source = originOf(module_, {value, rest});
     const Instruction* load = module_.definition(source.id);
+    if (load && load->op == Op::OpUndef) continue;
     const Access from = load && load->op == Op::OpLoad ? module_.access(load->at(0)) : Access{};
     const bool constant = std::ranges::all_of(from.indices, [](const auto& i) { return i.has_value(); });
     if (from.variable == variable && constant) {
@@ -598,6 +599,12 @@ bool StageFacts::arrivesGuarded(const PathsAfter& paths, const Instruction& phi,
 bool StageFacts::choosesByVariable(const PathsAfter& paths, const Instruction& use, Id value, const AccessFacts& read,
                                    std::uint32_t leaf, const GuardTest& test) const {
   std::vector<Id> choices, conditions;
+  if (use.op == Op::OpLogicalAnd || use.op == Op::OpLogicalOr) {
+    // In `payload.t < 0.0 || payload.done`, a miss decides.
+    const Id other = use.at(0) == value ? use.at(1) : use.at(0);
+    const bool decides = dependsOnVariable(other, read.variable) && !dependsOnLeaf(other, read.variable, leaf);
+    return decides && (!test || test({other, use.op == Op::OpLogicalAnd}));
+  }
   if (use.op == Op::OpPhi) {
     const auto position = module_.position(module_.definitionIndex(use.result));
     if (!position) return false;

@@ -87,6 +87,11 @@ struct TypeComparison {
     const Type& left = aTypes.get(a);
     const Type& right = bTypes.get(b);
     if (++steps > kMaxComparisons || depth > kMaxNesting) return {};
+    // HLSL and Slang put a single value into a structure.
+    if (left.kind == Kind::structure && right.kind != Kind::structure && left.members.size() == 1)
+      return compare(left.members[0], b, depth + 1) ? std::optional(versus(a, b)) : std::nullopt;
+    if (right.kind == Kind::structure && left.kind != Kind::structure && right.members.size() == 1)
+      return compare(a, right.members[0], depth + 1) ? std::optional(versus(a, b)) : std::nullopt;
     if (left.kind != right.kind || left.width != right.width || left.isSigned != right.isSigned) return versus(a, b);
     switch (left.kind) {
       case Kind::vector:

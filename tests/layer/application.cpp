@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <thread>
 
@@ -57,6 +58,13 @@ Info structure(VkStructureType type, void* next = nullptr) {
   info.sType = type;
   info.pNext = next;
   return info;
+}
+
+// CPU time of the calling thread.
+double threadSeconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 struct Memory {
@@ -124,6 +132,8 @@ class Vulkan {
     return reinterpret_cast<Function>(vkGetDeviceProcAddr(device_, name));
   }
 
+  bool usesLibrary() const { return app_.modules == Modules::library || app_.modules == Modules::flags2; }
+
   void createInstance() {
     VkApplicationInfo application{
         VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "layer test", 0, nullptr, 0, VK_API_VERSION_1_3};
@@ -160,6 +170,11 @@ class Vulkan {
     auto rays = structure<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR);
     rays.rayTracingPipeline = VK_TRUE;
+    rays.rayTracingPipelineTraceRaysIndirect = app_.trace != Trace::direct;
+    auto maintenance = structure<VkPhysicalDeviceRayTracingMaintenance1FeaturesKHR>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_MAINTENANCE_1_FEATURES_KHR);
+    maintenance.rayTracingMaintenance1 = maintenance.rayTracingPipelineTraceRaysIndirect2 = VK_TRUE;
+    if (app_.trace == Trace::indirect2) rays.pNext = &maintenance;
     auto structures = structure<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR, &rays);
     structures.accelerationStructure = VK_TRUE;
@@ -172,9 +187,10 @@ class Vulkan {
     newer.maintenance4 = VK_TRUE;
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
-    const std::vector<const char*> extensions{
+    std::vector<const char*> extensions{
         VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
         VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME, VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME};
+    if (app_.trace == Trace::indirect2) extensions.push_back(VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME);
     auto info = structure<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &newer);
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
@@ -218,6 +234,7 @@ class Vulkan {
   }
 
   void submit(const std::function<void(VkCommandBuffer)>& record) {
+    const double cpu = threadSeconds();
     VkCommandBufferAllocateInfo allocation{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
                                            VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -231,6 +248,7 @@ class Vulkan {
     info.commandBufferCount = 1;
     info.pCommandBuffers = &commands;
     require(vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
+    submitCpuSeconds_ += threadSeconds() - cpu;
     require(vkQueueWaitIdle(queue_), "vkQueueWaitIdle");
     vkFreeCommandBuffers(device_, pool_, 1, &commands);
   }
@@ -263,6 +281,12 @@ class Vulkan {
     info.scratchData.deviceAddress = (scratch.address + 255) / 256 * 256;
     const VkAccelerationStructureBuildRangeInfoKHR range{1, 0, 0, 0};
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
+    if (app_.hostBuilds) {
+      require(deviceFunction<PFN_vkBuildAccelerationStructuresKHR>("vkBuildAccelerationStructuresKHR")(
+                  device_, VK_NULL_HANDLE, 1, &info, &ranges),
+              "vkBuildAccelerationStructuresKHR");
+      return structure;
+    }
     submit([&](VkCommandBuffer commands) {
       deviceFunction<PFN_vkCmdBuildAccelerationStructuresKHR>("vkCmdBuildAccelerationStructuresKHR")(commands, 1, &info,
                                                                                                      &ranges);
@@ -294,6 +318,7 @@ class Vulkan {
       triangles.indexType = VK_INDEX_TYPE_NONE_KHR;
       geometry.geometry.triangles = triangles;
     }
+    if (app_.opaque) geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
     bottom_ = build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry);
     VkAccelerationStructureDeviceAddressInfoKHR address{
         VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR, nullptr, bottom_};
@@ -303,12 +328,14 @@ class Vulkan {
     instance.instanceShaderBindingTableRecordOffset = app_.recordOffset & 0xFFFFFFu;
     instance.accelerationStructureReference = deviceFunction<PFN_vkGetAccelerationStructureDeviceAddressKHR>(
         "vkGetAccelerationStructureDeviceAddressKHR")(device_, &address);
+    if (app_.hostBuilds) instance.accelerationStructureReference = reinterpret_cast<std::uint64_t>(bottom_);
     const Memory instances = allocate(sizeof instance, kInput);
     std::memcpy(instances.mapped, &instance, sizeof instance);
     auto top = structure<VkAccelerationStructureGeometryKHR>(VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR);
     top.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
     top.geometry.instances = {
         VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR, nullptr, VK_FALSE, {instances.address}};
+    if (app_.hostBuilds) top.geometry.instances.data.hostAddress = instances.mapped;
     top_ = build(VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, top);
   }
 
@@ -370,6 +397,17 @@ class Vulkan {
         {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, words_.back().size() * 4, words_.back().data()});
     if (app_.modules == Modules::inlined) {
       stage.pNext = &moduleInfos_.back();
+    } else if (app_.modules == Modules::identifiers) {
+      VkShaderModule module = VK_NULL_HANDLE;
+      require(vkCreateShaderModule(device_, &moduleInfos_.back(), nullptr, &module), "vkCreateShaderModule");
+      modules_.push_back(module);
+      VkShaderModuleIdentifierEXT& identifier = identifiers_.emplace_back(
+          structure<VkShaderModuleIdentifierEXT>(VK_STRUCTURE_TYPE_SHADER_MODULE_IDENTIFIER_EXT));
+      deviceFunction<PFN_vkGetShaderModuleIdentifierEXT>("vkGetShaderModuleIdentifierEXT")(device_, module,
+                                                                                           &identifier);
+      identifierInfos_.push_back({VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_MODULE_IDENTIFIER_CREATE_INFO_EXT, nullptr,
+                                  identifier.identifierSize, identifier.identifier});
+      stage.pNext = &identifierInfos_.back();
     } else {
       require(vkCreateShaderModule(device_, &moduleInfos_.back(), nullptr, &stage.module), "vkCreateShaderModule");
       modules_.push_back(stage.module);
@@ -419,13 +457,20 @@ class Vulkan {
                                                   &dynamic};
     auto info = structure<VkRayTracingPipelineCreateInfoKHR>(VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR);
     info.flags = flags;
+    if (app_.modules == Modules::identifiers) info.flags |= VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT;
+    struct {
+      VkStructureType type;
+      const void* next;
+      std::uint64_t flags;
+    } flags2{static_cast<VkStructureType>(1000470005), nullptr, flags};
+    if (app_.modules == Modules::flags2) info.pNext = &flags2, info.flags = 0;
     info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
     info.pStages = parts.stages.data();
     info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
     info.pGroups = parts.groups.data();
     info.maxPipelineRayRecursionDepth = app_.depth;
     info.pLibraryInfo = libraries;
-    if (app_.modules == Modules::library) info.pLibraryInterface = &limits;
+    if (usesLibrary()) info.pLibraryInterface = &limits;
     if (app_.stack) info.pDynamicState = &states;
     info.layout = layout_;
     VkPipeline pipeline = VK_NULL_HANDLE;
@@ -448,8 +493,8 @@ class Vulkan {
   }
 
   void createPipeline() {
-    const bool library = app_.modules == Modules::library;
-    words_.reserve(64), moduleInfos_.reserve(64);
+    const bool library = usesLibrary();
+    words_.reserve(64), moduleInfos_.reserve(64), identifiers_.reserve(64), identifierInfos_.reserve(64);
     Parts own, hits;
     addGeneral(own, "a.rgen");
     for (const std::string& miss : app_.misses) addGeneral(own, miss);
@@ -468,9 +513,11 @@ class Vulkan {
         const VkPipeline other = create(own, 0, library ? &info : nullptr, app_.modules == Modules::deferred);
         vkDestroyPipeline(device_, other, nullptr);
       });
+    const double cpu = threadSeconds();
     const auto start = std::chrono::steady_clock::now();
     pipeline_ = create(own, 0, library ? &info : nullptr, app_.modules == Modules::deferred);
     run_.creationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run_.creationCpuSeconds = threadSeconds() - cpu;
     for (std::thread& other : others) other.join();
     VkDebugUtilsObjectNameInfoEXT name{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,
                                        VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), "main"};
@@ -510,16 +557,37 @@ class Vulkan {
     for (std::size_t r = 0; r < 4; ++r)
       regions_[r] = {regions[r].size > 0 ? base + regions[r].offset : 0, regions[r].size > 0 ? regions[r].stride : 0,
                      regions[r].size};
+    traceRays_ = deviceFunction<PFN_vkCmdTraceRaysKHR>("vkCmdTraceRaysKHR");
+    if (app_.trace == Trace::direct) return;
+    arguments_ = allocate(sizeof(VkTraceRaysIndirectCommand2KHR), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    const auto [generation, miss, hit, callable] = regions_;
+    const VkTraceRaysIndirectCommand2KHR command{generation.deviceAddress,
+                                                 generation.size,
+                                                 miss.deviceAddress,
+                                                 miss.size,
+                                                 miss.stride,
+                                                 hit.deviceAddress,
+                                                 hit.size,
+                                                 hit.stride,
+                                                 callable.deviceAddress,
+                                                 callable.size,
+                                                 callable.stride,
+                                                 app_.width,
+                                                 kHeight,
+                                                 1};
+    std::memcpy(arguments_.mapped, &command, sizeof command);
   }
 
   void trace() {
     auto start = std::chrono::steady_clock::now();
     submit([&](VkCommandBuffer commands) { recordTrace(commands); });
     run_.firstSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    submitCpuSeconds_ = 0;
     start = std::chrono::steady_clock::now();
     for (std::uint32_t i = 1; i < app_.submissions; ++i)
       submit([&](VkCommandBuffer commands) { recordTrace(commands); });
     run_.traceSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run_.recordCpuSeconds = submitCpuSeconds_;
     run_.pixels.resize(std::size_t{kHeight} * app_.width);
     std::memcpy(run_.pixels.data(), result_.mapped, run_.pixels.size() * sizeof(float));
   }
@@ -530,8 +598,18 @@ class Vulkan {
     if (app_.stack)
       deviceFunction<PFN_vkCmdSetRayTracingPipelineStackSizeKHR>("vkCmdSetRayTracingPipelineStackSizeKHR")(commands,
                                                                                                            *app_.stack);
-    deviceFunction<PFN_vkCmdTraceRaysKHR>("vkCmdTraceRaysKHR")(commands, &regions_[0], &regions_[1], &regions_[2],
-                                                               &regions_[3], app_.width, kHeight, 1);
+    switch (app_.trace) {
+      case Trace::direct:
+        traceRays_(commands, &regions_[0], &regions_[1], &regions_[2], &regions_[3], app_.width, kHeight, 1);
+        return;
+      case Trace::indirect:
+        deviceFunction<PFN_vkCmdTraceRaysIndirectKHR>("vkCmdTraceRaysIndirectKHR")(
+            commands, &regions_[0], &regions_[1], &regions_[2], &regions_[3],
+            arguments_.address + offsetof(VkTraceRaysIndirectCommand2KHR, width));
+        return;
+      case Trace::indirect2:
+        deviceFunction<PFN_vkCmdTraceRaysIndirect2KHR>("vkCmdTraceRaysIndirect2KHR")(commands, arguments_.address);
+    }
   }
 
   const Application& app_;
@@ -553,6 +631,8 @@ class Vulkan {
   Memory result_;
   std::vector<std::vector<std::uint32_t>> words_;
   std::vector<VkShaderModuleCreateInfo> moduleInfos_;
+  std::vector<VkShaderModuleIdentifierEXT> identifiers_;
+  std::vector<VkPipelineShaderStageModuleIdentifierCreateInfoEXT> identifierInfos_;
   std::vector<VkSpecializationMapEntry> entries_;
   std::vector<std::uint32_t> values_;
   VkSpecializationInfo specialization_{};
@@ -561,6 +641,9 @@ class Vulkan {
   VkPipeline pipeline_ = VK_NULL_HANDLE;
   std::uint32_t groupCount_ = 0;
   VkStridedDeviceAddressRegionKHR regions_[4]{};
+  PFN_vkCmdTraceRaysKHR traceRays_ = nullptr;
+  Memory arguments_;  // of an indirect trace
+  double submitCpuSeconds_ = 0;
 };
 
 }  // namespace

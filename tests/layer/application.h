@@ -13,7 +13,15 @@
 
 namespace quintet::test {
 
-enum class Modules { handles, inlined, library, deferred };
+enum class Modules {
+  handles,
+  inlined,
+  library,
+  deferred,
+  flags2,      // a library by VkPipelineCreateFlags2CreateInfo, which replaces the flags of the create info
+  identifiers  // VK_EXT_shader_module_identifier, with the layer of host_driver.cpp
+};
+enum class Trace { direct, indirect, indirect2 };
 
 // What the application does. The defaults are correct.
 struct Application {
@@ -30,8 +38,10 @@ struct Application {
   bool debugInfo = true;
   std::uint32_t pipelines = 1;  // created by as many threads at the same time; one is used
 
-  bool boxes = false;                  // geometry: boxes instead of triangles
-  std::uint32_t recordOffset = 0;      // of the instance
+  bool boxes = false;              // geometry: boxes instead of triangles
+  bool opaque = false;             // VK_GEOMETRY_OPAQUE_BIT_KHR
+  bool hostBuilds = false;         // vkBuildAccelerationStructuresKHR, with the layer of host_driver.cpp and width 0
+  std::uint32_t recordOffset = 0;  // of the instance
   std::optional<std::uint32_t> stack;  // vkCmdSetRayTracingPipelineStackSizeKHR
 
   // Shader binding table. Each region starts at a multiple of 256 bytes.
@@ -43,6 +53,7 @@ struct Application {
   };
   std::function<void(std::vector<std::byte>& bytes, std::vector<Region>& regions)> editTable;
   std::uint32_t submissions = 1;  // of the same trace
+  Trace trace = Trace::direct;    // which command
   std::uint32_t width = 8;        // 0 traces nothing: for tables that crash a driver
 
   std::vector<std::string> layers;
@@ -58,10 +69,12 @@ struct RunResult {
   std::vector<Message> messages;    // of the layer under test: ids that start with Q
   std::vector<std::string> others;  // of the validation layers
   std::vector<float> pixels;
-  double creationSeconds = 0;  // of the pipeline
-  double firstSeconds = 0;     // of the first submission, from recording to completion
-  double traceSeconds = 0;     // of the others
-  std::string error;           // of a Vulkan call; empty if all succeeded
+  double creationSeconds = 0;     // of the pipeline
+  double creationCpuSeconds = 0;  // of the calling thread
+  double firstSeconds = 0;        // of the first submission, from recording to completion
+  double traceSeconds = 0;        // of the others
+  double recordCpuSeconds = 0;    // of the calling thread, to record and submit them
+  std::string error;              // of a Vulkan call; empty if all succeeded
 };
 
 RunResult runApplication(const Application& application);

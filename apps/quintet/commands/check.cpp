@@ -28,6 +28,7 @@
 #include "cli/values.h"
 #include "cli/work.h"
 #include "job/live_check.h"
+#include "job/live_module_check.h"
 #include "job/module_checks.h"
 #include "job/program_checks.h"
 #include "job/scene_source.h"
@@ -189,8 +190,6 @@ std::optional<Options> parseOptions(Arguments arguments) {
   if (!options.spirv && !options.groups.empty()) throw UsageError("--groups requires --spirv");
   if (options.spirv) {
     if (request.instrument) throw UsageError("--spirv and --instrument exclude each other");
-    if (options.watch) throw UsageError("--spirv and --watch exclude each other");
-    if (!options.graph.empty()) throw UsageError("--spirv and --graph exclude each other");
   }
   convertLoading(options.load, run.load);
   if (!options.size.empty()) run.size = parseSize("--size", options.size);
@@ -211,12 +210,12 @@ std::optional<Options> parseOptions(Arguments arguments) {
   return options;
 }
 
-void writeGraph(const std::filesystem::path& graph, const std::optional<check::PipelineModel>& model) {
+void writeGraph(const std::filesystem::path& graph, const std::optional<check::PipelineModel>& model, bool spirv) {
   const std::string extension = graphExtension(graph);
   const std::filesystem::path file = outputFile(graph);
   if (!model)
-    printMessage(
-        fmt::format("quintet: {}: not written, because the program does not compile", printable(graph.string())));
+    printMessage(fmt::format("quintet: {}: not written, because {}", printable(graph.string()),
+                             spirv ? "a module could not be analyzed" : "the program does not compile"));
   else if (extension == ".json")
     writeFile(file, check::pipelineJson(*model));
   else if (extension == ".dot")
@@ -234,12 +233,16 @@ void writeSarif(const job::CheckReport& report, const Options& options, bool com
 // Writes the files that the options request. Returns the exit status.
 // `checks` is null for SPIR-V.
 int writeReport(const job::CheckReport& report, const job::ProgramChecks* checks, const Options& options) {
+  if (!checks && !options.graph.empty() && report.programs.size() != 1)
+    throw UsageError(fmt::format("--graph requires one pipeline, but {} are given", report.programs.size()));
   std::vector<Diagnostic> found = report.diagnostics();
   const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
   int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict()) ? 0 : kRuntimeError;
   try {
     if (!options.sarif.empty()) writeSarif(report, options, true);
-    if (!options.graph.empty()) writeGraph(options.graph, checks->pipelineOf(report.programs.front()));
+    if (!options.graph.empty())
+      writeGraph(options.graph, checks ? checks->pipelineOf(report.programs.front()) : report.programs.front().model,
+                 !checks);
   } catch (const FileError& error) {
     status = reportFailure(error, FailureJson::none);
     found.push_back(asDiagnostic(error));
@@ -307,17 +310,18 @@ void checkGraph(const Options& options) {
   if (count != 1) throw UsageError(fmt::format("--graph requires one program, but {} are given", count));
 }
 
-// Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status.
-int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
-  Printer printer(&checks, options);
-  job::LiveCheck live(checks);
+// Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status. `live` is a LiveCheck, or a
+// LiveModuleCheck with null `checks`. `prepare` throws UsageError if the options do not fit what is on disk.
+template <class Live, class Prepare>
+int watch(Live& live, const job::ProgramChecks* checks, const Options& options, const Prepare& prepare) {
+  Printer printer(checks, options);
   const GracefulStop stop;
   int status = 0;
   for (bool canFail = !restartedAfterCrash();; canFail = false) {
     setWatchedFiles(live.watcher().watched());
     try {
-      checkGraph(options);
-      status = writeReport(live.run(printer), &checks, options);
+      prepare();
+      status = writeReport(live.run(printer), checks, options);
     } catch (const Error& error) {  // such as a second program in the folder, with --graph
       if (canFail) throw;
       status = reportFailure(error, FailureJson::none);
@@ -334,8 +338,13 @@ int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
 }
 
 int checkSpirv(const Options& options) {
+  const job::ModuleCheckRequest request{options.request.programs, options.groups, options.request.device,
+                                        !options.graph.empty()};
+  if (options.watch) {
+    job::LiveModuleCheck live(request);
+    return watch(live, nullptr, options, [] {});
+  }
   Printer printer(nullptr, options);
-  const job::ModuleCheckRequest request{options.request.programs, options.groups, options.request.device};
   return writeReport(job::checkModuleFiles(request, printer), nullptr, options);
 }
 
@@ -351,7 +360,10 @@ int checkCommand(Arguments arguments) {
   if (!options) return 0;
   if (options->spirv) return checkSpirv(*options);
   const job::ProgramChecks checks(options->request);
-  if (options->watch) return watchPrograms(checks, *options);
+  if (options->watch) {
+    job::LiveCheck live(checks);
+    return watch(live, &checks, *options, [&] { checkGraph(*options); });
+  }
   checkGraph(*options);
   Printer printer(&checks, *options);
   return writeReport(checks.run(printer), &checks, *options);

@@ -100,11 +100,15 @@ class DiagramBuilder {
     return fmt::format("{}", fmt::join(names, " or "));
   }
 
+  static std::string withLoop(const std::string& rays, bool inLoop) {
+    return !inLoop ? rays : rays.empty() ? "in a loop" : rays + ", in a loop";
+  }
+
   DiagramNode traceNode(const PipelineModel::Trace& trace) const {
     const std::string where = lineText(fileOf(trace.stage), trace.location);
     return {NodeKind::trace,
             "trace " + where,
-            {{"ray", rayNames(trace.rays) + (trace.inLoop ? ", in a loop" : "")},
+            {{"ray", withLoop(rayNames(trace.rays), trace.inLoop)},
              {"flags", trace.flags},
              {"mask", trace.mask},
              {"record", fmt::format("offset {}, stride {}", trace.offset, trace.stride)},
@@ -154,7 +158,7 @@ class DiagramBuilder {
   void addHitBox(const std::vector<HitUse>& uses) {
     const HitUse& use = uses.front();
     const PipelineModel::Hit& first = model_.hits[use.hit];
-    DiagramNode node{NodeKind::hit, fmt::format("hit, ray type {}", first.ray), {}, {}};
+    DiagramNode node{NodeKind::hit, first.ray.empty() ? "hit" : fmt::format("hit, ray type {}", first.ray), {}, {}};
     node.rows = {{"closest hit", use.skipsClosestHit ? "skipped (SkipClosestHitShader)" : fileOf(first.closestHit)},
                  {"any hit", use.skipsAnyHit ? "skipped (Opaque)" : fileOf(first.anyHit)},
                  {"intersection", fileOf(first.intersection)}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -59,29 +60,30 @@ std::string quotedList(std::string_view label, const std::vector<std::string>& n
 
 class ModelBuilder {
  public:
-  ModelBuilder(const program::Program& program, const PipelineGraph& graph, const program::SceneFacts* scene,
-               const CheckResult& result)
+  // Of a program, or of raw modules if `program` is null.
+  ModelBuilder(const std::string& name, const program::Program* program, const PipelineGraph& graph,
+               const program::SceneFacts* scene, const CheckResult& result)
       : graph_(graph), program_(program), scene_(scene) {
-    model_.program = program_.name;
+    model_.program = name;
     if (scene_) model_.scene = scene_->name;
     model_.recursionDepth = result.recursionDepth;
-    model_.declaredRecursion = program_.declaredRecursion;
+    model_.declaredRecursion = graph_.groups.declaredRecursion;
     model_.stackBytes = result.stackBytes;
     model_.diagnostics = result.diagnostics;
     used_.resize(model_.diagnostics.size());
-    for (const program::RayType& ray : program_.rays) model_.rays.push_back(ray.name);
+    model_.rays = graph_.groups.rays;
   }
 
   PipelineModel build() {
     const std::set<std::size_t> reached = graph_.reachableStages();
     for (std::size_t i = 0; i < graph_.stages.size(); ++i)
       model_.stages.push_back({graph_.nameOf(graph_.stages[i].file), graph_.stages[i].kind, reached.contains(i), {}});
-    for (std::size_t group = 0; group < program_.hitGroups.size(); ++group)
+    for (std::size_t group = 0; group < graph_.groups.hitGroups.size(); ++group)
       for (std::size_t ray = 0; ray < graph_.rayCount(); ++ray) addHit({group, ray});
     for (std::size_t i = 0; i < graph_.groups.misses.size(); ++i)
       model_.misses.push_back(
           recordOf(graph_.groups.misses[i].name, graph_.groups.misses[i].file, graph_.groups.misses[i].record));
-    for (const program::Callable& callable : program_.callables)
+    for (const program::Callable& callable : graph_.groups.callables)
       model_.callables.push_back(recordOf(callable.name, callable.file, callable.record));
     for (const TraceSite& site : graph_.traces) addTrace(site);
     for (const CallSite& site : graph_.calls) addCall(site);
@@ -98,25 +100,25 @@ class ModelBuilder {
 
   PipelineModel::Record recordOf(const std::string& name, const std::string& file,
                                  const program::RecordValues& values) const {
-    return {name, stageOf(file), recordText(program_, values)};
+    return {name, stageOf(file), program_ ? recordText(*program_, values) : ""};
   }
 
   void addHit(HitGroupRay hit) {
-    const program::HitGroup& group = program_.hitGroups[hit.group];
+    const program::HitGroup& group = graph_.groups.hitGroups[hit.group];
     const program::HitShaders& shaders = graph_.shaders(hit);
     PipelineModel::Hit added;
     added.group = group.name;
-    added.ray = program_.rays[hit.ray].name;
+    added.ray = graph_.groups.rays[hit.ray];
     added.closestHit = stageOf(shaders.closestHit);
     added.anyHit = stageOf(shaders.anyHit);
     added.intersection = stageOf(shaders.intersection);
-    added.record = recordText(program_, shaders.record);
+    if (program_) added.record = recordText(*program_, shaders.record);
     if (!group.geometry.empty()) added.binding.push_back(quotedList("geometry", group.geometry));
     if (!group.material.empty()) added.binding.push_back(quotedList("material", group.material));
     if (!group.primitives.empty()) added.binding.push_back(quotedList("primitives", group.primitives));
-    if (scene_)
+    if (scene_ && program_)
       for (const program::GeometryFacts& geometry : scene_->geometries)
-        if (program::hitGroupFor(program_, geometry) == hit.group) added.geometry.push_back(nameOf(geometry));
+        if (program::hitGroupFor(*program_, geometry) == hit.group) added.geometry.push_back(nameOf(geometry));
     const SourceLocation line = graph_.descriptionLocation(group.line);
     const SourceLocation own = graph_.descriptionLocation(shaders.line);
     for (std::size_t i = 0; i < model_.diagnostics.size(); ++i)
@@ -131,7 +133,8 @@ class ModelBuilder {
   }
 
   SourceLocation userLocation(SourceLocation location) const {
-    location.file = program::userFile(program_, location.file);
+    location.file =
+        program_ ? program::userFile(*program_, location.file) : spirv::splitIdLocation(location.file).first;
     return location;
   }
 
@@ -182,7 +185,7 @@ class ModelBuilder {
 
   // Diagnostics in the file of a stage that no trace, call or hit group has.
   void addStageDiagnostics(std::size_t stage) {
-    const std::string file = program_.path(model_.stages[stage].file);
+    const std::string file = graph_.groups.path(model_.stages[stage].file);
     const bool shared = std::ranges::count(model_.stages, model_.stages[stage].file, &PipelineModel::Stage::file) > 1;
     for (std::size_t i = 0; i < model_.diagnostics.size(); ++i)
       if (!shared && !used_[i] && model_.diagnostics[i].file == file) model_.stages[stage].diagnostics.push_back(i);
@@ -193,7 +196,7 @@ class ModelBuilder {
     PipelineModel::Trace trace;
     trace.stage = site.stage;
     trace.location = userLocation(graph_.location(site));
-    trace.rays = graph_.rayTypes(facts);
+    trace.rays = program_ ? graph_.rayTypes(facts) : Indices{0};
     trace.flags = valuesText(facts.flags, flagsText);
     trace.mask = valuesText(facts.mask, hexadecimal);
     trace.offset = valuesText(facts.offset, decimal);
@@ -204,7 +207,10 @@ class ModelBuilder {
     trace.skipsAnyHit = facts.flags.mustHave(kFlagOpaque);
     describeVariable(site.stage, facts.payload, trace.payload, trace.payloadType, trace.payloadBytes);
     for (const HitGroupRay hit : site.hits)
-      trace.targets.push_back({Role::closestHit, hit.group * graph_.rayCount() + hit.ray, facts.offset.certain(), {}});
+      trace.targets.push_back({Role::closestHit,
+                               hit.group * graph_.rayCount() + hit.ray,
+                               program_ ? facts.offset.certain() : !site.assumesHits,
+                               {}});
     for (const Edge& edge : site.edges)
       if (edge.role == Role::miss) trace.targets.push_back({Role::miss, edge.index, edge.exact, {}});
     addDiagnostics(trace);
@@ -233,7 +239,7 @@ class ModelBuilder {
   }
 
   const PipelineGraph& graph_;
-  const program::Program& program_;
+  const program::Program* program_;  // null for raw modules
   const program::SceneFacts* scene_;
   PipelineModel model_;
   std::vector<bool> used_;  // diagnostics of traces, calls and hit groups
@@ -249,7 +255,14 @@ std::optional<PipelineModel> describePipeline(const program::Program& program, c
   if (!graph.error.empty()) return {};
   std::optional<program::SceneFacts> facts;
   if (scene) facts = program::factsFor(program, *scene);
-  return ModelBuilder(program, graph, facts ? &*facts : nullptr, result).build();
+  return ModelBuilder(program.name, &program, graph, facts ? &*facts : nullptr, result).build();
+}
+
+std::optional<PipelineModel> describeModules(const std::string& name, PipelineGroups groups,
+                                             std::span<const ModuleStage> modules, const CheckResult& result) {
+  const PipelineGraph graph(std::move(groups), modules);
+  if (!graph.error.empty()) return {};
+  return ModelBuilder(name, nullptr, graph, nullptr, result).build();
 }
 
 namespace {

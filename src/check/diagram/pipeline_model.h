@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,11 @@ struct PipelineModel {
 // can be null. Returns nullopt if a stage does not compile.
 std::optional<PipelineModel> describePipeline(const program::Program& program, const shader::Compiler& compiler,
                                               const program::SceneFacts* scene, const CheckResult& result);
+
+// Describes a pipeline of raw modules, with the arguments and the result of checkModules(). Ray types have no names there, and
+// records and bindings of hit groups are unknown. Returns nullopt if a stage cannot be analyzed.
+std::optional<PipelineModel> describeModules(const std::string& name, PipelineGroups groups,
+                                             std::span<const ModuleStage> modules, const CheckResult& result);
 
 // Returns an object with a line break at its end. docs/cli.md lists the keys.
 std::string pipelineJson(const PipelineModel& model);

@@ -38,14 +38,6 @@ PipelineGroups groupsOfStages(std::span<const ModuleStage> stages) {
   const auto closest = namesOf(stages, Stage::closestHit), any = namesOf(stages, Stage::anyHit),
              intersections = namesOf(stages, Stage::intersection);
   groups.hasIntersections = !intersections.empty();
-  if (closest.size() == 1 && any.size() <= 1 && intersections.size() <= 1) {
-    program::HitShaders shaders;
-    shaders.closestHit = closest[0];
-    if (!any.empty()) shaders.anyHit = any[0];
-    if (!intersections.empty()) shaders.intersection = intersections[0];
-    groups.hitGroups.push_back(hitGroup(closest[0], std::move(shaders)));
-    return groups;
-  }
   const auto add = [&](const std::vector<std::string>& files, std::string program::HitShaders::*member) {
     for (const std::string& file : files) {
       program::HitShaders shaders;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <utility>
 
 #include "base/error.h"
+#include "spirv/plain_code.h"
 #include "spirv/plain_lines.h"
 
 namespace quintet::check {
@@ -55,11 +57,26 @@ std::optional<ModuleSummary> summarize(const std::vector<std::uint32_t>& words, 
 ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t>& words,
                         const spirv::EntryPoint& entryPoint,
                         const std::optional<shader::SpecializationValues>& values) {
-  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}};
-  try {
-    stage.spirv = shader::optimizeSpecialized(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)), values);
-  } catch (const Error& error) {
-    stage.problem = error.what();
+  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false};
+  constexpr int kMaxUnknown = 64;
+  std::vector<std::uint32_t> plain =
+      spirv::withPlainCode(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)));
+  for (int i = 0; i < kMaxUnknown; ++i) {
+    stage.problem.clear();
+    try {
+      stage.spirv = shader::optimizeSpecialized(plain, values);
+      // Some passes leave modules with other extensions unchanged, and a module without its extensions is invalid.
+      if (const auto old = spirv::withoutNewExtensions(stage.spirv)) stage.spirv = shader::reduceUnvalidated(*old);
+      return stage;
+    } catch (const Error& error) {
+      const shader::ValidationProblem problem = shader::validate(plain);
+      stage.problem = problem.text.empty() ? error.what() : problem.text;
+      stage.malformed = !problem.text.empty() && !problem.unknown;
+      // What an unknown capability or decoration adds does not matter, unless the module has unknown instructions, too.
+      auto reduced = problem.unknown ? spirv::withoutDeclaration(plain, problem.instruction) : std::nullopt;
+      if (!reduced) return stage;
+      plain = std::move(*reduced);
+    }
   }
   return stage;
 }

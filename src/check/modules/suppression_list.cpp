@@ -83,7 +83,7 @@ std::vector<SuppressedDiagnostic> SuppressionList::apply(std::vector<Diagnostic>
   std::vector<Diagnostic> kept;
   for (Diagnostic& d : diagnostics) {
     if (const Entry* entry = find(d))
-      result.push_back({std::move(d), entry->location, entry->reason});
+      result.push_back({std::move(d), entry->location, entry->reason, false});
     else
       kept.push_back(std::move(d));
   }

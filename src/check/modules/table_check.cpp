@@ -36,14 +36,24 @@ class TableRule {
       return;
     }
     if (region.data.size() < region.bytes) findings_.complete = false;
+    // With a stride of 0, any index selects the same record.
+    if (region.stride == 0 && kind != TableKind::rayGeneration) findings_.complete = false;
     const std::uint64_t stride = kind == TableKind::rayGeneration || region.stride == 0 ? region.bytes : region.stride;
-    const std::size_t count =
-        std::min<std::size_t>(std::min<std::uint64_t>(region.data.size(), region.bytes) / stride, kMaxTableRecords);
+    const std::uint64_t all = std::min<std::uint64_t>(region.data.size(), region.bytes) / stride;
+    const std::size_t count = std::min<std::size_t>(all, kMaxTableRecords);
+    if (count < all) findings_.complete = false;
+    reports_ = 0;
+    // Large tables have gaps, which no ray reaches and nothing writes.
+    mayHaveGaps_ = count > kMaxTableWithoutGaps;
     for (std::size_t i = 0; i < count; ++i) checkRecord(i, region.data.data() + i * stride, stride);
   }
 
  private:
   void add(std::string_view id, std::string text) { report_.add(id, {}, std::move(text)); }
+  void addRecord(std::string_view id, std::string text) {
+    constexpr int kMaxReports = 16;  // for one region
+    if (!mayHaveGaps_ && ++reports_ <= kMaxReports) add(id, std::move(text));
+  }
   std::string name() const { return std::string(tableName(kind_)); }
 
   // Returns false if the records cannot be read. VUID-vkCmdTraceRaysKHR-pRayGenShaderBindingTable-03680 and others.
@@ -86,21 +96,22 @@ class TableRule {
     }
     const auto found = byHandle_.find(handle);
     if (found == byHandle_.end()) {
-      add("Q661", fmt::format("{} record {} has a handle that is not one of the bound pipeline", name(), index));
+      addRecord("Q661", fmt::format("{} record {} has a handle that is not one of the bound pipeline", name(), index));
       return;
     }
     const auto fits = [&](std::size_t group) { return groups_[group].kind == kind_; };
     const auto group = std::ranges::find_if(found->second, fits);
     if (group == found->second.end()) {
       const TableGroup& other = groups_[found->second.front()];
-      add("Q662", fmt::format("{} record {} has the handle of {}, which is for the {} region", name(), index,
-                              other.name, tableName(other.kind)));
+      addRecord("Q662", fmt::format("{} record {} has the handle of {}, which is for the {} region", name(), index,
+                                    other.name, tableName(other.kind)));
       return;
     }
     records.back() = *group;
     const std::uint64_t needed = limits_.handleBytes + groups_[*group].recordBytes;
     if (groups_[*group].recordBytes > 0 && stride < needed)
-      add("Q666",
+      addRecord(
+          "Q666",
           fmt::format("{} record {} has {} bytes, but {} needs {}: a handle of {} and a shader record block of {}",
                       name(), index, stride, groups_[*group].name, needed, limits_.handleBytes,
                       groups_[*group].recordBytes));
@@ -110,6 +121,8 @@ class TableRule {
   const TableLimits& limits_;
   std::map<std::vector<std::byte>, std::vector<std::size_t>> byHandle_;
   TableKind kind_ = TableKind::rayGeneration;
+  int reports_ = 0;
+  bool mayHaveGaps_ = false;
   Report report_;
   TableFindings findings_;
 };

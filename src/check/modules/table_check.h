@@ -54,6 +54,7 @@ struct TableFindings {
 };
 
 inline constexpr std::size_t kMaxTableRecords = std::size_t{1} << 20;  // further records are not checked
+inline constexpr std::size_t kMaxTableWithoutGaps = 4096;              // records of larger ones may be unwritten
 
 TableFindings checkTable(const std::array<TableRegion, kTableKinds>& regions, std::span<const TableGroup> groups,
                          const TableLimits& limits);

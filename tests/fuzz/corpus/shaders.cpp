@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <spirv-tools/libspirv.hpp>
+
 #include "base/error.h"
+#include "base/file.h"
 #include "program/compile.h"
 #include "program/load.h"
 #include "seeds.h"
@@ -26,6 +29,18 @@ std::vector<fs::path> programsIn(const fs::path& folder) {
   return programs;
 }
 
+// Libraries in the form of other compilers.
+void addModuleSeeds(std::vector<Seed>& seeds, const fs::path& folder) {
+  for (const fs::path& file : programsIn(folder)) {
+    if (file.extension() != ".spvasm") continue;
+    std::vector<std::uint32_t> words;
+    if (!spvtools::SpirvTools(SPV_ENV_UNIVERSAL_1_5).Assemble(readTextFile(file), &words))
+      throw Error(file.string() + ": cannot be assembled");
+    const auto bytes = std::as_bytes(std::span(words));
+    seeds.push_back({file.stem().string() + ".spv", {bytes.begin(), bytes.end()}});
+  }
+}
+
 }  // namespace
 
 void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
@@ -42,6 +57,7 @@ void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
   }
   if (seeds.empty()) throw Error("no SPIR-V module is small enough");
   corpora["modules"] = seeds;
+  addModuleSeeds(corpora["modules"], root / "tests/check/modules");
 }
 
 }  // namespace quintet::fuzz

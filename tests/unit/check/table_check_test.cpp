@@ -38,6 +38,14 @@ TEST(TableCheck, AcceptsAnIntactTable) {
   EXPECT_TRUE(found.complete);
 }
 
+// Any index selects the only record, so the number of records says nothing.
+TEST(TableCheck, DoesNotCountTheRecordsOfARegionWithoutStride) {
+  Table table;
+  table.regions[1].stride = 0;
+  EXPECT_THAT(table.check(), IsEmpty());
+  EXPECT_FALSE(checkTable(table.regions, table.groups, {}).complete);
+}
+
 TEST(TableCheck, ReportsHandles) {
   Table table;
   table.regions[2].data = handle(9);
@@ -50,6 +58,23 @@ TEST(TableCheck, ReportsHandles) {
   EXPECT_THAT(table.check(), ElementsAre("Q663"));
   table.regions[0] = {};
   EXPECT_THAT(table.check(), ElementsAre("Q663"));
+}
+
+// Records of a large table can be gaps. Reports of a region are limited.
+TEST(TableCheck, AcceptsGapsOfLargeTables) {
+  const auto filled = [](std::size_t count, int group) {
+    Table table;
+    TableRegion& region = table.regions[2];
+    region.data.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      for (const std::byte b : handle(group)) region.data.push_back(b);
+    region.bytes = region.data.size();
+    region.available = region.bytes;
+    return table.check();
+  };
+  EXPECT_THAT(filled(kMaxTableWithoutGaps, 9), testing::SizeIs(16));
+  EXPECT_THAT(filled(kMaxTableWithoutGaps + 1, 9), IsEmpty());
+  EXPECT_THAT(filled(kMaxTableWithoutGaps + 1, 2), IsEmpty());  // memory that was a table of another pipeline
 }
 
 TEST(TableCheck, ReportsRegions) {

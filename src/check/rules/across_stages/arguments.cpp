@@ -11,7 +11,7 @@
 namespace quintet::check {
 namespace {
 
-constexpr std::uint32_t kRecordBits = 0xF, kMissBits = 0xFFFF, kMaskBits = 0xFF;
+constexpr std::uint32_t kRecordBits = 0xF, kMissBits = 0xFFFF, kMaskBits = 0xFF, kAllBits = ~std::uint32_t{0};
 
 // The values of at least `count` that occur; a lower bound if the values are not known.
 std::vector<std::uint32_t> wrongValues(const spirv::ArgumentValues& argument, std::uint32_t count) {
@@ -36,9 +36,10 @@ class ArgumentRule {
     if (inRange(trace.offset, "offset", "Q503", kRecordBits)) inRange(trace.stride, "stride", "Q503", kRecordBits);
     if (inRange(trace.miss, "miss index", "Q504", kMissBits) && graph_.groups.tablesKnown) checkMiss(trace);
     for (const std::uint32_t mask : wrongValues(trace.mask, kMaskBits + 1))
-      report_.add("Q505", location_,
-                  fmt::format("the cull mask of this trace is {}{:#x}, but only its low 8 bits, {:#04x}, are used",
-                              boundText(trace.mask), mask, mask & kMaskBits));
+      if (mask != kAllBits || graph_.usesLibrary)  // ~0 is the usual mask of HLSL
+        report_.add("Q505", location_,
+                    fmt::format("the cull mask of this trace is {}{:#x}, but only its low 8 bits, {:#04x}, are used",
+                                boundText(trace.mask), mask, mask & kMaskBits));
     checkShadowMiss(site);
     if (trace.flags.certain())
       for (const std::uint32_t flags : trace.flags.values) checkFlags(flags);

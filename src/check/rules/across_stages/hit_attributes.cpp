@@ -15,10 +15,25 @@ namespace {
 
 using spv::StorageClass;
 
-bool isVec2(const spirv::Types& types, spirv::Id id) {
+// Adds the scalars of a type. Returns false if one of them is no float of 32 bits, or if there are more than two.
+bool countFloats(const spirv::Types& types, spirv::Id id, std::uint32_t& count, int depth = 0) {
+  using Kind = spirv::Type::Kind;
   const spirv::Type& type = types.get(id);
-  return type.kind == spirv::Type::Kind::vector && type.count == 2 &&
-         types.get(type.element).kind == spirv::Type::Kind::floating && types.get(type.element).width == 32;
+  if (type.kind == Kind::floating && type.width == 32) return ++count <= 2;
+  constexpr int kMaxNested = 4;
+  if (depth > kMaxNested) return false;
+  const bool elements = (type.kind == Kind::vector || type.kind == Kind::array) && type.count > 0 && type.count <= 2;
+  for (std::uint32_t i = 0; elements && i < type.count; ++i)
+    if (!countFloats(types, type.element, count, depth + 1)) return false;
+  if (type.kind != Kind::structure) return elements;
+  return std::ranges::all_of(type.members,
+                             [&](spirv::Id member) { return countFloats(types, member, count, depth + 1); });
+}
+
+// vec2, also in a structure as in HLSL: BuiltInTriangleIntersectionAttributes.
+bool isVec2(const spirv::Types& types, spirv::Id id) {
+  std::uint32_t count = 0;
+  return countFloats(types, id, count) && count == 2;
 }
 
 // Q201, Q202: the attribute of the closest-hit and any-hit shader, compared with the one that is written.

@@ -19,10 +19,19 @@ struct Pair {
   const spirv::SharedVariable* sent = nullptr;
   const spirv::SharedVariable* received = nullptr;
   std::optional<std::string> difference;  // of their types; nullopt if they agree
+  bool alternative = false;               // the site may run a shader instead that receives nothing
 };
 
 spirv::Id sentVariable(const TraceSite& site) { return site.trace->payload; }
 spirv::Id sentVariable(const CallSite& site) { return site.call->data; }
+
+// A miss index beyond the miss shaders that are given names a record without a shader, or of a shader that is not given.
+bool missesNone(const PipelineGraph& graph, const TraceSite& site) {
+  const spirv::ArgumentValues& miss = site.trace->miss;
+  return !graph.groups.tablesKnown && miss.certain() &&
+         std::ranges::all_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) >= graph.groups.misses.size(); });
+}
+bool missesNone(const PipelineGraph&, const CallSite&) { return false; }
 
 template <class Site>
 std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming) {
@@ -30,6 +39,13 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const spirv::StageFacts& sender = graph.facts(sites[i]);
     const spirv::SharedVariable* sent = sender.variable(sentVariable(sites[i]));
+    const auto mayReceiveNothing = [&](Role role) {
+      return std::ranges::any_of(sites[i].edges, [&](const Edge& edge) {
+        return edge.role == role && !edge.exact && !graph.facts(edge).incoming(incoming);
+      });
+    };
+    const bool silentMiss = mayReceiveNothing(Role::miss) || missesNone(graph, sites[i]);
+    const bool silentCall = mayReceiveNothing(Role::callable);
     for (const Edge& edge : sites[i].edges) {
       if (edge.role == Role::intersection) continue;
       const spirv::StageFacts& receiver = graph.facts(edge);
@@ -37,7 +53,8 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
       if (!sent || !received) continue;
       pairs.push_back(
           {i, &edge, sent, received,
-           spirv::differenceOf(sender.module().types(), sent->type, receiver.module().types(), received->type)});
+           spirv::differenceOf(sender.module().types(), sent->type, receiver.module().types(), received->type),
+           edge.role == Role::miss ? silentMiss : edge.role == Role::callable && silentCall});
     }
   }
   return pairs;
@@ -53,9 +70,10 @@ bool isTypeError(const PipelineGraph& graph, const std::vector<Pair>& pairs, con
     return std::ranges::any_of(pairs, [&](const Pair& p) { return !p.difference && related(p); });
   };
   const bool receiverAgrees = agrees([&](const Pair& p) { return p.edge->stage == pair.edge->stage; });
-  const bool senderAgrees = agrees([&](const Pair& p) {
-    return p.site == pair.site && (p.edge->role == Role::miss) == (pair.edge->role == Role::miss);
-  });
+  const bool senderAgrees =
+      pair.alternative || agrees([&](const Pair& p) {
+        return p.site == pair.site && (p.edge->role == Role::miss) == (pair.edge->role == Role::miss);
+      });
   // A pipeline can have groups that its table does not have, and a table can have records without a shader.
   const PipelineGroups& groups = graph.groups;
   if (groups.groupsKnown && !groups.tablesKnown) return !receiverAgrees && !senderAgrees;
@@ -189,7 +207,7 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
   for (const PipelineStage& stage : graph.stages) {
     const bool receives = stage.kind == shader::Stage::closestHit || stage.kind == shader::Stage::miss ||
                           stage.kind == shader::Stage::anyHit;
-    if (!receives || !stage.facts) continue;
+    if (!receives || !stage.facts || !stage.problem.empty()) continue;  // traces that are not followed
     for (const spirv::SharedVariable& variable : stage.facts->variables()) {
       const bool traced =
           std::ranges::any_of(stage.facts->traces(), [&](const auto& trace) { return trace.payload == variable.id; });

@@ -55,6 +55,14 @@ bool isRayDirection(const spirv::Module& module, spirv::Id direction) {
   return false;
 }
 
+// False for a constant that no trace starts at: an offset from a point that was folded to 0.
+bool canBeOrigin(const spirv::Module& module, spirv::Id value) {
+  return !module.isConstant(value) || std::ranges::any_of(module.users(value), [&](std::size_t user) {
+    const spirv::Instruction& trace = module.instructions()[user];
+    return trace.op == Op::OpTraceRayKHR && trace.at(6) == value;
+  });
+}
+
 // True for origin + t * direction.
 bool isPointOnRay(const spirv::Module& module, const spirv::Instruction& value) {
   if (spirv::isExtended(module, value, GLSLstd450Fma)) {  // fma(vec3(t), direction, origin)
@@ -66,7 +74,8 @@ bool isPointOnRay(const spirv::Module& module, const spirv::Instruction& value) 
   }
   if (value.op != Op::OpFAdd) return false;
   const spirv::Id a = directionOfStep(module, value.at(0)), b = directionOfStep(module, value.at(1));
-  return (a != 0 && isRayDirection(module, a)) || (b != 0 && isRayDirection(module, b));
+  return (a != 0 && isRayDirection(module, a) && canBeOrigin(module, value.at(1))) ||
+         (b != 0 && isRayDirection(module, b) && canBeOrigin(module, value.at(0)));
 }
 
 // True for a sum of vertices that are loaded from a buffer and multiplied by weights that are not constant.

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Vulkan layer below the link check that stands for drivers with functions that lavapipe does not have:
+//
+//   vkBuildAccelerationStructuresKHR  succeeds and builds nothing, so rays must not be traced
+//   VK_EXT_shader_module_identifier   identifiers are numbers, and pipelines can be created from them
+//
+// The specification of the interface is in the documentation of the Vulkan loader, LoaderLayerInterface.md.
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+#include <vulkan/vk_layer.h>
+#include <vulkan/vulkan.h>
+
+namespace {
+
+struct Instance {
+  VkInstance handle = VK_NULL_HANDLE;
+  PFN_vkGetInstanceProcAddr next = nullptr;
+};
+
+std::mutex mutex;
+Instance instance;  // of the last instance; tests have one at a time
+PFN_vkGetDeviceProcAddr nextOfDevice = nullptr;
+PFN_vkCreateRayTracingPipelinesKHR createPipelines = nullptr;
+std::map<std::uint64_t, VkShaderModule> modules;  // by identifier
+
+template <class Info>
+Info* chainEntry(const void* chain, VkStructureType type) {
+  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext) {
+    auto* info = reinterpret_cast<Info*>(const_cast<VkBaseInStructure*>(entry));
+    if (entry->sType == type && info->function == VK_LAYER_LINK_INFO) return info;
+  }
+  return nullptr;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL buildStructures(VkDevice, VkDeferredOperationKHR, std::uint32_t,
+                                               const VkAccelerationStructureBuildGeometryInfoKHR*,
+                                               const VkAccelerationStructureBuildRangeInfoKHR* const*) {
+  return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL getIdentifier(VkDevice, VkShaderModule module, VkShaderModuleIdentifierEXT* identifier) {
+  const std::lock_guard lock(mutex);
+  const std::uint64_t number = modules.size() + 1;
+  modules[number] = module;
+  identifier->identifierSize = sizeof number;
+  std::memcpy(identifier->identifier, &number, sizeof number);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createRayTracingPipelines(VkDevice device, VkDeferredOperationKHR operation,
+                                                         VkPipelineCache cache, std::uint32_t count,
+                                                         const VkRayTracingPipelineCreateInfoKHR* infos,
+                                                         const VkAllocationCallbacks* allocator,
+                                                         VkPipeline* pipelines) {
+  const std::lock_guard lock(mutex);
+  std::vector<VkRayTracingPipelineCreateInfoKHR> copies(infos, infos + count);
+  std::vector<std::vector<VkPipelineShaderStageCreateInfo>> stages;
+  for (VkRayTracingPipelineCreateInfoKHR& info : copies) {
+    auto& list = stages.emplace_back(info.pStages, info.pStages + info.stageCount);
+    for (VkPipelineShaderStageCreateInfo& stage : list) {
+      const auto* given = static_cast<const VkPipelineShaderStageModuleIdentifierCreateInfoEXT*>(stage.pNext);
+      if (!given || given->sType != VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_MODULE_IDENTIFIER_CREATE_INFO_EXT) continue;
+      std::uint64_t number = 0;
+      std::memcpy(&number, given->pIdentifier, sizeof number);
+      stage.module = modules.at(number);
+      stage.pNext = nullptr;
+    }
+    info.pStages = list.data();
+    info.flags &= ~static_cast<VkPipelineCreateFlags>(VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT);
+  }
+  return createPipelines(device, operation, cache, count, copies.data(), allocator, pipelines);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
+                                              VkInstance* created) {
+  auto* entry = chainEntry<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
+  const PFN_vkGetInstanceProcAddr next = entry->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+  entry->u.pLayerInfo = entry->u.pLayerInfo->pNext;
+  const VkResult result =
+      reinterpret_cast<PFN_vkCreateInstance>(next(VK_NULL_HANDLE, "vkCreateInstance"))(info, allocator, created);
+  instance = {*created, next};
+  return result;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
+                                            const VkAllocationCallbacks* allocator, VkDevice* device) {
+  auto* entry = chainEntry<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
+  const PFN_vkGetDeviceProcAddr next = entry->u.pLayerInfo->pfnNextGetDeviceProcAddr;
+  entry->u.pLayerInfo = entry->u.pLayerInfo->pNext;
+  const auto create = reinterpret_cast<PFN_vkCreateDevice>(instance.next(instance.handle, "vkCreateDevice"));
+  const VkResult result = create(physical, info, allocator, device);
+  if (result != VK_SUCCESS) return result;
+  nextOfDevice = next;
+  createPipelines =
+      reinterpret_cast<PFN_vkCreateRayTracingPipelinesKHR>(next(*device, "vkCreateRayTracingPipelinesKHR"));
+  modules.clear();
+  return result;
+}
+
+template <class Function>
+PFN_vkVoidFunction asVoid(Function* function) {
+  return reinterpret_cast<PFN_vkVoidFunction>(function);
+}
+
+PFN_vkVoidFunction deviceFunction(std::string_view name) {
+  if (name == "vkBuildAccelerationStructuresKHR") return asVoid(buildStructures);
+  if (name == "vkGetShaderModuleIdentifierEXT") return asVoid(getIdentifier);
+  if (name == "vkCreateRayTracingPipelinesKHR") return asVoid(createRayTracingPipelines);
+  return nullptr;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice handle, const char* name) {
+  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return asVoid(getDeviceProcAddr);
+  if (const PFN_vkVoidFunction own = deviceFunction(name)) return own;
+  return nextOfDevice(handle, name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance handle, const char* name) {
+  const std::string_view wanted = name;
+  if (wanted == "vkCreateInstance") return asVoid(createInstance);
+  if (wanted == "vkCreateDevice") return asVoid(createDevice);
+  if (wanted == "vkGetInstanceProcAddr") return asVoid(getInstanceProcAddr);
+  if (wanted == "vkGetDeviceProcAddr") return asVoid(getDeviceProcAddr);
+  if (!handle) return nullptr;
+  if (const PFN_vkVoidFunction own = deviceFunction(wanted)) return own;
+  return instance.next(handle, name);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* negotiation) {
+  if (negotiation->loaderLayerInterfaceVersion < 2) return VK_ERROR_INITIALIZATION_FAILED;
+  negotiation->loaderLayerInterfaceVersion = 2;
+  negotiation->pfnGetInstanceProcAddr = getInstanceProcAddr;
+  negotiation->pfnGetDeviceProcAddr = getDeviceProcAddr;
+  negotiation->pfnGetPhysicalDeviceProcAddr = nullptr;
+  return VK_SUCCESS;
+}
