@@ -61,7 +61,7 @@ lessons: build ## Copy the excerpts into the lesson pages (docs/lessons) and ren
 	@bash scripts/excerpts.sh
 	@bash scripts/lessons.sh $(BUILD)/bin/quintet
 
-reference: build ## Compare with the reference images and values (tests/reference/run)
+reference: build ## Compare with the reference images, and run the tests of ../shared (tests/reference/run)
 	@QUINTET=$(CURDIR)/$(BUILD)/bin/quintet tests/reference/run
 
 mutation: build ## Insert bugs one by one and check that the tests detect them (tests/mutation/run)

@@ -25,10 +25,11 @@ endif()
 set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
-# The longest suites: those that compare histograms of many samples with integrals, for every lobe or stack of panes, and
-# the one that inserts a bug of each kind into programs. Together they take a fifth of the time of all suites. 'make test'
-# leaves them to CI and `ctest --preset release -L long`.
-set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights unit.Mutation)
+# The longest suites: those that compare histograms of many samples with integrals, for every lobe or stack of panes, the one
+# that explains samples of all programs, the coverage of error estimates, and the one that inserts a bug of each kind into
+# programs. Together they take a fifth of the time of all suites. 'make test' leaves them to CI and `ctest --preset release -L
+# long`.
+set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights gpu.ErrorEstimate gpu.ExplainedPrograms unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)

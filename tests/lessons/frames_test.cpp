@@ -144,6 +144,26 @@ TEST(LessonProgressive, EachPixelHasItsOwnShiftInBothDirections) {
   }
 }
 
+// A diagonal edge separates the halves of pixels. With the same shift in both directions, all points are on one line along it.
+TEST(LessonProgressive, ShiftsInBothDirectionsAreIndependent) {
+  LessonOptions options;
+  options.set = {{"points", "1"}};
+  scene::Scene scene = lessonScene("09_progressive");
+  scene.instances.resize(1);
+  mat4 m = glm::rotate(glm::translate(mat4(1.0f), vec3(0, 1, 0)), glm::radians(45.0f), vec3(0, 0, 1));
+  scene.instances[0].worldFromObject = glm::scale(glm::translate(m, vec3(0, -10, 0)), vec3(40, 20, 0.002f));
+  options.scene = scene;
+  const LessonImage image = renderLesson("09_progressive", options);
+  const auto x = image.width / 2, y = image.height / 2;
+  int hits = 0;
+  for (std::uint32_t k = 0; k < y; ++k) {
+    hits += image.at(x + k, y + k).x > 0.1f;
+    hits += image.at(x - 1 - k, y - 1 - k).x > 0.1f;
+  }
+  EXPECT_GT(hits, static_cast<int>(y * 2 / 3));
+  EXPECT_LT(hits, static_cast<int>(y * 4 / 3));
+}
+
 TEST(LessonDynamic, MovesInstances) {
   for (const std::uint32_t frame : {0u, 7u, 25u}) {
     scene::Scene scene = lessonScene("19_dynamic");

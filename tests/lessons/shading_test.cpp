@@ -72,6 +72,15 @@ void expectShadow(std::uint32_t frame, const scene::Scene& scene) {
 TEST(LessonShadow, CastsShadowsInTheFirstFrame) { expectShadow(0, lessonScene("05_shadow")); }
 TEST(LessonShadow, MovesTheLamp) { expectShadow(16, lessonScene("05_shadow")); }
 // What is behind the lamp casts no shadow.
+// A plate just below the lamp hides it from a part of the floor.
+TEST(LessonShadow, ReachesTheLamp) {
+  scene::Scene scene = lessonScene("05_shadow");
+  scene::Instance plate = scene.instances.front();
+  plate.worldFromObject = glm::scale(glm::translate(mat4(1.0f), vec3(3.29f, 4.5f, 0.023f)), vec3(0.1f));
+  scene.instances.push_back(plate);
+  expectShadow(0, scene);
+}
+
 TEST(LessonShadow, EndsAtTheLamp) {
   scene::Scene scene = lessonScene("05_shadow");
   scene::Instance ceiling = scene.instances.front();

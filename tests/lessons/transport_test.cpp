@@ -217,6 +217,10 @@ std::vector<dvec3> cornellReference(int bounces, int paths) {
   });
 }
 
+TEST(LessonPathTracer, OneBounceIsTheDirectLight) {
+  expectBlocks(renderTransport("22_path_tracer", 8, {{"bounces", "1"}, {"samples", "64"}}), cornellReference(1, 150));
+}
+
 TEST(LessonPathTracer, BlocksAgreeWithTheHostWithinThreePercent) {
   expectBlocks(renderTransport("22_path_tracer", 16, {{"bounces", "3"}, {"samples", "64"}}), cornellReference(3, 600));
 }

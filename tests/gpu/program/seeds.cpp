@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
@@ -12,8 +13,9 @@
 namespace quintet::test {
 
 std::string seedDocument(const std::string& prefix) {
-  std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(QUINTET_SHARED_SEEDS, failed))
+  const char* shared = std::getenv("QUINTET_SHARED");
+  if (!shared) return {};
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(shared) / "seeds"))
     if (entry.path().filename().string().starts_with(prefix)) return readTextFile(entry.path());
   return {};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lecture programs of the source documents (../shared/seeds, next to the repository): cut from the text of a page, with
-// the lines that the slides omit ("...") supplied. The documents are not part of the repository; tests skip without them.
+// The lecture programs of the source documents ($QUINTET_SHARED/seeds): cut from the text of a page, with the lines that the
+// slides omit ("...") supplied. The documents are not part of the repository. tests/reference/run sets the variable; the tests
+// are skipped without it. The lessons, with tests in tests/lessons, have programs of our own for the same subjects.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_SEEDS_H
 #define QUINTET_TESTS_GPU_PROGRAM_SEEDS_H
 
@@ -15,7 +16,7 @@ std::string seedDocument(const std::string& prefix);
 
 #define QUINTET_NEED_SEED(variable, prefix)          \
   const std::string variable = seedDocument(prefix); \
-  if (variable.empty()) GTEST_SKIP() << "document " prefix " not found"
+  if (variable.empty()) GTEST_SKIP() << "QUINTET_SHARED is not set, or has no document " prefix
 
 // Returns the text from occurrence number `which` (0-based) of `from` to the closing brace of the next `void main` whose
 // body starts with the marker.

@@ -178,5 +178,47 @@ TEST(TextureSlots, ReadTheirChannelsAtTheTransformedCoordinates) {
   EXPECT_GT(compared, 150);
 }
 
+// Two normal maps with their own scales, in the tangent frame: that of the surface and that of the clearcoat.
+TEST(TextureSlots, NormalMapsHaveTheirOwnScales) {
+  scene::Scene scene = texturedTriangle();
+  scene::Geometry& g = scene.meshes[0].geometries[0];
+  g.normals.assign(3, vec3(0, 0, 1));
+  g.tangents.assign(3, vec4(0, 1, 0, 1));  // the bitangent is -x
+  scene::Material& m = scene.materials[0];
+  m.clearcoat = 1.0f;
+  const auto use = [&](std::uint8_t x, std::uint8_t y, std::uint8_t z) {
+    scene::TextureUse u;
+    u.texture = addTexel(scene, {x, y, z, 255});
+    return u;
+  };
+  m.normalTexture = use(160, 90, 230), m.normalScale = 0.7f;
+  m.clearcoatNormalTexture = use(100, 150, 240), m.clearcoatNormalScale = 0.4f;
+  struct Out {
+    vec3 normal, coat;
+  };
+  const LightScene device(scene, {});
+  const auto found = runCompute<Out>(R"(
+    #include <quintet/material.glsl>
+    struct Out_ { vec3 normal; vec3 coat; };
+    #define Out Out_
+    Out run(uint index) {
+      HitPayload hit;
+      hit.t = 1.0;
+      hit.instance = hit.geometry = hit.primitive = 0u;
+      hit.barycentric = vec2(0.3, 0.3);
+      const vec3 wo = vec3(0.0, 0.0, 1.0);
+      const Shading r = shadeSurface(fetchSurface(hit, wo), wo);
+      return Out(r.normal, toWorld(r, r.bsdf.clearcoatNormal));
+    }
+  )",
+                                     1, device.options());
+  const auto expected = [](const dvec3& bytes, double scale) {
+    const dvec3 t = 2.0 / 255.0 * bytes - 1.0;
+    return glm::normalize(dvec3(-scale * t.y, scale * t.x, t.z));
+  };
+  EXPECT_LT(glm::length(dvec3(found[0].normal) - expected({160, 90, 230}, 0.7)), 1e-5);
+  EXPECT_LT(glm::length(dvec3(found[0].coat) - expected({100, 150, 240}, 0.4)), 1e-5);
+}
+
 }  // namespace
 }  // namespace quintet::test

@@ -210,6 +210,48 @@ TEST(Sampler, PairsAreIndependent) {
 }
 
 // PCG numbers are also independent between the samples of one pixel. Sobol points are not, by design.
+// Draws of any kind use the next dimension, whatever was drawn before.
+TEST(Sampler, DrawsUseSuccessiveDimensions) {
+  struct Out {
+    std::uint32_t draws;        // dimension after four draws
+    std::uint32_t differences;  // from the same draws of a sampler that starts at their dimension
+  };
+  const std::string body = R"(
+    #include <quintet/frame.glsl>
+    #ifdef PCG
+    #include <quintet/sampling/pcg.glsl>
+    #else
+    #include <quintet/sampling/sobol.glsl>
+    #endif
+    struct Out_ { uint draws; uint differences; };
+    #define Out Out_
+    Sampler at(uint index, uint dimension) {
+      Sampler s = makeSampler(uvec2(index % 7u, index / 7u), index, 5u);
+      s.dimension = dimension;
+      return s;
+    }
+    Out run(uint index) {
+      Sampler s = at(index, 0u);
+      const vec2 a = next2D(s);
+      const float b = next1D(s);
+      const uint bits = nextBits(s);
+      const vec2 c = next2D(s);
+      Sampler first = at(index, 0u), second = at(index, 1u), third = at(index, 2u), fourth = at(index, 3u);
+      const uint differences = uint(a != next2D(first)) + uint(b != next1D(second)) + uint(bits != nextBits(third)) +
+                               uint(c != next2D(fourth));
+      return Out(s.dimension, differences + uint(a == c));
+    }
+  )";
+  for (const Defines& defines : kSamplers) {
+    ComputeOptions options;
+    options.defines = defines;
+    for (const Out& out : runCompute<Out>(body, 64, options)) {
+      EXPECT_EQ(out.draws, 4u);
+      EXPECT_EQ(out.differences, 0u);
+    }
+  }
+}
+
 TEST(Pcg, SuccessiveSamplesAreIndependent) {
   constexpr std::uint32_t kCount = 1 << 17;
   const std::vector<float> x = component(evaluate(series({12, 34}, 6, kCount + 8), {{"PCG", "1"}}), 0);

@@ -17,8 +17,10 @@ namespace {
 
 using test::Bytes;
 using test::makeGradient;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 std::string imageError(const Bytes& bytes, const std::string& name = "a.img") {
   try {
@@ -168,7 +170,7 @@ TEST(JpegTest, ReadsBaselineProgressiveAndGray) {
 
 TEST(JpegTest, RejectsCmyk) {
   const Image four = makeGradient(16, 16, 4, PixelType::u8);
-  EXPECT_THAT(imageError(test::encodeJpeg(four, 90, TJSAMP_444, 0)), HasSubstr("a.img: CMYK JPEG is not supported"));
+  EXPECT_THAT(imageError(test::encodeJpeg(four, 90, TJSAMP_444, 0)), AllOf(StartsWith("a.img: "), HasSubstr("CMYK")));
 }
 
 TEST(JpegTest, AllowsPaddingBetweenSegments) {
@@ -207,14 +209,14 @@ TEST(CodecTest, ProbesWithoutDecoding) {
 }
 
 TEST(CodecTest, RejectsUnknownContent) {
-  EXPECT_EQ(imageError({}), "a.img: the image is empty");
+  EXPECT_THAT(imageError({}), AllOf(StartsWith("a.img: "), HasSubstr("empty")));
   EXPECT_THAT(imageError(test::bytesOf("GIF89a......")), HasSubstr("a.img: not a supported image"));
   EXPECT_THROW(readImage("/nonexistent/a.png"), FileError);
 }
 
 TEST(CodecTest, RejectsHugeSizesBeforeAllocating) {
   EXPECT_THAT(imageError(test::makePng({60000, 60000, 8, 6, 0, {}, "x"})),
-              HasSubstr("the image is too large: 60000 x 60000"));
+              AllOf(HasSubstr("too large"), HasSubstr("60000 x 60000")));
   EXPECT_THAT(imageError(test::makePng({70000, 1, 8, 0, 0, {}, "x"})), HasSubstr("at most 65536"));
   EXPECT_THAT(imageError(test::makePng({16000, 16000, 8, 0, 0, {}, "x"})), HasSubstr("256000000 bytes"));
   EXPECT_THAT(imageError(test::makePng({0, 5, 8, 0, 0, {}, "x"})), HasSubstr("PNG"));

@@ -16,6 +16,7 @@
 namespace quintet::output {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -90,13 +91,13 @@ TEST(ExplanationText, ReportsWhatDoesNotAddUp) {
   e.discarded = false;
   e.lostRecords = 2;
   const std::string text = explanationText(e, kWidth);
-  EXPECT_THAT(text, HasSubstr("The sum is not the value of 'color'."));
-  EXPECT_THAT(text, HasSubstr("The instrumented program computed 0.75 0.5 0.25"));
-  EXPECT_THAT(text, HasSubstr("2 records did not fit into the log"));
+  EXPECT_THAT(text, AllOf(HasSubstr("sum"), HasSubstr("'color'")));
+  EXPECT_THAT(text, AllOf(HasSubstr("instrumented"), HasSubstr("0.75 0.5 0.25")));
+  EXPECT_THAT(text, HasSubstr("2 records"));
   e = job::somePath();
   e.discarded = true;
   e.outputs[0].value = e.outputs[0].recorded = vec4(0.0f);
-  EXPECT_THAT(explanationText(e, kWidth), HasSubstr("The program discarded the sample"));
+  EXPECT_THAT(explanationText(e, kWidth), HasSubstr("discarded"));
   EXPECT_THAT(explanationText(e, kWidth), Not(HasSubstr("The sum is not")));
 }
 

@@ -12,6 +12,7 @@
 namespace quintet::spirv {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using Kind = PrintArgument::Kind;
 using Words = std::vector<std::uint32_t>;
@@ -120,26 +121,26 @@ TEST(PrintFormat, MissingWordsAreZero) {
 TEST(PrintFormat, RejectsOtherTypes) {
   EXPECT_EQ(errorOf("%d", {kFloat}),
             "the specifier %d does not match argument 1, which is float; write for example %f");
-  EXPECT_THAT(errorOf("%f", {kInt}), HasSubstr("which is int; write for example %d"));
-  EXPECT_THAT(errorOf("%f", {kVec3}), HasSubstr("which is vec3; write for example %v3f"));
+  EXPECT_THAT(errorOf("%f", {kInt}), AllOf(HasSubstr("int"), HasSubstr("%d")));
+  EXPECT_THAT(errorOf("%f", {kVec3}), AllOf(HasSubstr("vec3"), HasSubstr("%v3f")));
   EXPECT_THAT(errorOf("%v2f", {kVec3}), HasSubstr("%v3f"));
-  EXPECT_THAT(errorOf("%v3f", {kFloat}), HasSubstr("which is float; write for example %f"));
+  EXPECT_THAT(errorOf("%v3f", {kFloat}), AllOf(HasSubstr("float"), HasSubstr("%f")));
   EXPECT_THAT(errorOf("%u", {kUnsignedLong}), HasSubstr("write for example %lu"));
   EXPECT_THAT(errorOf("%ld", {kInt}), HasSubstr("write for example %d"));
-  EXPECT_THAT(errorOf("%d %f", {kInt, kUint}), HasSubstr("argument 2, which is uint; write for example %u"));
+  EXPECT_THAT(errorOf("%d %f", {kInt, kUint}), AllOf(HasSubstr("argument 2"), HasSubstr("uint"), HasSubstr("%u")));
   EXPECT_THAT(errorOf("%f", {kBool}), HasSubstr("write for example %u"));
-  EXPECT_EQ(errorOf("%f", {kMatrix}), "argument 1 is mat3, which cannot be printed; print its scalars or vectors");
+  EXPECT_THAT(errorOf("%f", {kMatrix}), AllOf(HasSubstr("argument 1"), HasSubstr("mat3")));
 }
 
 TEST(PrintFormat, RejectsOtherNumbersOfArguments) {
-  EXPECT_EQ(errorOf("%d %d", {kInt}), "the format has 2 specifiers, but the call has 1 argument for it");
-  EXPECT_EQ(errorOf("%%", {kInt}), "the format has 0 specifiers, but the call has 1 argument for it");
+  EXPECT_THAT(errorOf("%d %d", {kInt}), AllOf(HasSubstr("2 specifiers"), HasSubstr("1 argument")));
+  EXPECT_THAT(errorOf("%%", {kInt}), AllOf(HasSubstr("0 specifiers"), HasSubstr("1 argument")));
 }
 
 TEST(PrintFormat, RejectsInvalidSpecifiers) {
   EXPECT_THAT(errorOf("%s", {kInt}), HasSubstr("the specifier %s is unknown"));
   EXPECT_THAT(errorOf("%p", {kUint}), HasSubstr("%p is unknown"));
-  EXPECT_THAT(errorOf("50 %", {}), HasSubstr("the specifier % at the end of the format is incomplete"));
+  EXPECT_THAT(errorOf("50 %", {}), AllOf(HasSubstr("%"), HasSubstr("incomplete")));
   EXPECT_THAT(errorOf("%5.2", {kFloat}), HasSubstr("incomplete"));
   EXPECT_THAT(errorOf("%v5f", {kFloat}), HasSubstr("2, 3 or 4"));
   EXPECT_THAT(errorOf("%*d", {kInt}), HasSubstr("width *"));
