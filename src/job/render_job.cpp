@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <future>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,10 +18,12 @@
 #include "gpu/device_list.h"
 #include "gpu/error.h"
 #include "job/device_limits.h"
+#include "job/early_pipeline.h"
 #include "job/film_store.h"
 #include "job/identity.h"
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
+#include "program/heat.h"
 #include "render/scene/camera.h"
 #include "scene/animation/animated_bounds.h"
 #include "scene/animation/pose.h"
@@ -140,10 +143,20 @@ void RenderJob::prepare(Observer& observer) {
   checkMemoryFor(renderedSize(request, request.size));
 
   // Compiled while the scene is read and uploaded; errors of the scene are reported first.
-  std::future<program::CompiledProgram> compiling = std::async(std::launch::async, [&] {
+  // Probes change the stages, and further devices create their pipelines when they are linked.
+  const bool early = loading && !request.print && !program::hasHeatMap(job_.program, request.outputs);
+  const gpu::PipelineCache& pipelineCache = engine_.pipelineCache();
+  struct Compilation {
+    program::CompiledProgram compiled;
+    std::unique_ptr<EarlyPipeline> pipeline;
+  };
+  std::future<Compilation> compiling = std::async(std::launch::async, [&] {
     const render::Defines scene =
         scene_ ? scene_->onDevice->defines() : render::shaderDefines(loading->features().get(), context.info().quirks);
-    return program::compile(job_.program, engine_.compiler(), render::renderDefines(scene, request.outputs));
+    Compilation result;
+    result.compiled = program::compile(job_.program, engine_.compiler(), render::renderDefines(scene, request.outputs));
+    if (early) result.pipeline = EarlyPipeline::make(context, job_.program, result.compiled, pipelineCache);
+    return result;
   });
   if (loading) {
     observer.stage("loading " + job_.scene.name);
@@ -153,7 +166,8 @@ void RenderJob::prepare(Observer& observer) {
     prepareScene(std::move(loaded), observer);
   }
   observer.stage("compiling shaders");
-  link(compiling.get(), observer);
+  Compilation compilation = compiling.get();
+  link(std::move(compilation.compiled), observer);
   if (request.shutter) {
     requireAnimation("a shutter would change nothing; remove it");
     frameOutdated_ = true;  // the renderer does not have the shutter yet
