@@ -28,6 +28,8 @@ constexpr std::size_t kShownIdDigits = 12;
 PartCheck missingPart(const Plan& plan, std::size_t part) {
   const std::optional<PartFailure> failure = readFailure(plan, part);
   if (!failure) return {PartState::missing, ""};
+  if (failure->status == 0)
+    return {PartState::missing, fmt::format("started on {} and not finished", failure->machine)};
   return {PartState::missing,
           fmt::format("failed on {} with status {}: {}", failure->machine, failure->status, failure->message)};
 }

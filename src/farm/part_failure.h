@@ -14,8 +14,8 @@ namespace quintet::farm {
 
 struct PartFailure {
   std::string machine;
-  std::string message;
-  int status = 0;  // of the process
+  std::string message;  // empty if status is 0
+  int status = 0;       // of the process; 0 if it was started and has neither finished the part nor reported an error
 };
 
 std::string machineName();  // of this machine

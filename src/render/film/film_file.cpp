@@ -120,22 +120,6 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
 
 }  // namespace
 
-const std::string* findFact(const FilmFacts& facts, const std::string& name) {
-  const auto found = std::ranges::find(facts, name, &FilmFacts::value_type::first);
-  return found == facts.end() ? nullptr : &found->second;
-}
-
-std::vector<FactDifference> differences(const FilmFacts& left, const FilmFacts& right) {
-  std::vector<FactDifference> result;
-  for (const auto& [name, value] : left) {
-    const std::string* other = findFact(right, name);
-    if (!other || *other != value) result.push_back({name, &value, other});
-  }
-  for (const auto& [name, value] : right)
-    if (!findFact(left, name)) result.push_back({name, nullptr, &value});
-  return result;
-}
-
 std::vector<std::byte> encodeFilm(const FilmFile& file) {
   const std::string header = filmHeaderText(file);
   std::vector<std::byte> out(kFilmPrefixBytes + header.size());
@@ -145,7 +129,7 @@ std::vector<std::byte> encodeFilm(const FilmFile& file) {
   appendArray(out, file.film.statistics);
   for (const FilmPlane& plane : file.film.planes)
     forArrays(plane, [&](const char*, const auto& array, std::size_t group) { appendArray(out, array, group); });
-  const FilmPrefix prefix{kFilmFileVersion, static_cast<std::uint32_t>(header.size()),
+  const FilmPrefix prefix{kFilmFormatVersion, static_cast<std::uint32_t>(header.size()),
                           out.size() - kFilmPrefixBytes - header.size()};
   std::memcpy(out.data(), kFilmMagic.data(), kFilmMagic.size());
   std::memcpy(out.data() + kFilmMagic.size(), &prefix, sizeof prefix);

@@ -20,39 +20,14 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "base/memory_budget.h"
-#include "render/film/film_state.h"
+#include "render/film/film_content.h"
 
 namespace quintet::render {
 
-inline constexpr std::uint32_t kFilmFileVersion = 3;
 inline constexpr const char* kFilmExtension = ".qfilm";
-
-// Names and values in display order: {"seed", "3"}. Names are unique.
-using FilmFacts = std::vector<std::pair<std::string, std::string>>;
-
-const std::string* findFact(const FilmFacts& facts, const std::string& name);  // null if the name is missing
-
-struct FilmFile {
-  FilmFacts identity;  // facts that decide the values of samples: films belong together only if all of them are equal
-  FilmFacts notes;     // all other facts: file names, device, how to display the image
-  FilmState film;
-  // Unfinished adaptive sampling: the batches that each cell shall have (planCells), as decided at an earlier state of
-  // this film. The next decision follows once this plan is complete. Empty if nothing is decided yet.
-  std::vector<std::uint32_t> plan;
-};
-
-// A name whose values differ in two identities; the value is null on a side that lacks the name.
-struct FactDifference {
-  std::string name;
-  const std::string* left = nullptr;
-  const std::string* right = nullptr;
-};
-std::vector<FactDifference> differences(const FilmFacts& left, const FilmFacts& right);
 
 std::vector<std::byte> encodeFilm(const FilmFile& file);
 

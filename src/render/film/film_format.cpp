@@ -224,9 +224,9 @@ FilmPrefix checkedFilmPrefix(std::span<const std::byte> start, std::uint64_t fil
   if (start.size() < kFilmPrefixBytes) throw truncated();
   FilmPrefix prefix;
   std::memcpy(&prefix, start.data() + kFilmMagic.size(), sizeof prefix);
-  if (prefix.version != kFilmFileVersion)
+  if (prefix.version != kFilmFormatVersion)
     throw FileError(file, fmt::format("has version {} of the film format, but this Quintet reads version {}",
-                                      prefix.version, kFilmFileVersion));
+                                      prefix.version, kFilmFormatVersion));
   const std::uint64_t rest = fileBytes - kFilmPrefixBytes;
   const std::uint64_t expected = prefix.headerBytes + kFilmHashBytes;
   if (rest < expected || rest - expected < prefix.payloadBytes) throw truncated();

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "render/film/film_file.h"
+#include "render/film/film_content.h"
 
 namespace quintet::render {
 
@@ -27,13 +27,15 @@ void forArrays(Plane& plane, const Visit& visit) {
   visit("coverage", plane.coverage, std::size_t{shared::kCoverageSlots});
 }
 
+inline constexpr std::uint32_t kFilmFormatVersion = 3;
+
 // As in PNG: the first byte is not text, and the end reveals a transfer that changed line endings.
 inline constexpr std::array<unsigned char, 8> kFilmMagic{0x89, 'Q', 'F', 'I', 'L', 'M', '\r', '\n'};
 inline constexpr std::size_t kFilmPrefixBytes = 24;  // with the magic
 inline constexpr std::size_t kFilmHashBytes = 16;
 
 struct FilmPrefix {
-  std::uint32_t version = kFilmFileVersion;
+  std::uint32_t version = kFilmFormatVersion;
   std::uint32_t headerBytes = 0;
   std::uint64_t payloadBytes = 0;
 };

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "render/film/film_file.h"
+#include "render/film/film_content.h"
 
 namespace quintet::render {
 

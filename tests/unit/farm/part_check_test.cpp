@@ -94,6 +94,14 @@ TEST_F(FarmParts, OneErrorNamesAllProblems) {
                                   HasSubstr("extra.qfilm: is not a part of this plan"), Not(HasSubstr("part 3"))));
 }
 
+TEST_F(FarmParts, KilledProcessesLeaveARecord) {
+  std::filesystem::remove(partFile(plan_, 0));
+  recordFailure(plan_, 0, {"node7", "", 0});
+  EXPECT_EQ(problemOf(0), "started on node7 and not finished");
+  removeFailure(plan_, 0);
+  EXPECT_EQ(problemOf(0), "");
+}
+
 TEST_F(FarmParts, CopiesOfOtherPartsAreForeign) {
   std::filesystem::copy_file(partFile(plan_, 1), partFile(plan_, 2), std::filesystem::copy_options::overwrite_existing);
   EXPECT_EQ(stateOf(2), PartState::foreign);
