@@ -74,7 +74,7 @@ TEST(TableCheck, AcceptsGapsOfLargeTables) {
   };
   EXPECT_THAT(filled(kMaxTableWithoutGaps, 9), testing::SizeIs(16));
   EXPECT_THAT(filled(kMaxTableWithoutGaps + 1, 9), IsEmpty());
-  EXPECT_THAT(filled(kMaxTableWithoutGaps + 1, 2), IsEmpty());  // memory that was a table of another pipeline
+  EXPECT_THAT(filled(kMaxTableWithoutGaps + 1, 2), IsEmpty());  // memory that was a table of a different pipeline
 }
 
 TEST(TableCheck, ReportsRegions) {
