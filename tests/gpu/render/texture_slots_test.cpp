@@ -220,5 +220,32 @@ TEST(TextureSlots, NormalMapsHaveTheirOwnScales) {
   EXPECT_LT(glm::length(dvec3(found[0].coat) - expected({100, 150, 240}, 0.4)), 1e-5);
 }
 
+// The texture turns the tangent, counterclockwise from that of the surface, and the rotation of the material adds to it.
+TEST(TextureSlots, AnisotropyTurnsTheTangent) {
+  scene::Scene scene = texturedTriangle();
+  scene::Geometry& g = scene.meshes[0].geometries[0];
+  g.normals.assign(3, vec3(0, 0, 1));
+  g.tangents.assign(3, vec4(0, 1, 0, 1));  // the bitangent is -x
+  scene::Material& m = scene.materials[0];
+  m.anisotropy = 0.8f, m.anisotropyRotation = 0.3f;
+  m.anisotropyTexture.texture = addTexel(scene, {230, 170, 200, 255});
+  const LightScene device(scene, {});
+  const auto found = runCompute<vec3>(R"(
+    #include <quintet/material.glsl>
+    #define Out vec3
+    Out run(uint index) {
+      HitPayload hit;
+      hit.t = 1.0;
+      hit.instance = hit.geometry = hit.primitive = 0u;
+      hit.barycentric = vec2(0.3, 0.3);
+      const vec3 wo = vec3(0.0, 0.0, 1.0);
+      return shadeSurface(fetchSurface(hit, wo), wo).tangent;
+    }
+  )",
+                                      1, device.options());
+  const double angle = std::atan2(170 / 127.5 - 1, 230 / 127.5 - 1) + 0.3;
+  EXPECT_LT(glm::length(dvec3(found[0]) - dvec3(-std::sin(angle), std::cos(angle), 0)), 1e-5);
+}
+
 }  // namespace
 }  // namespace quintet::test
