@@ -4,6 +4,7 @@
 #ifndef QUINTET_LAB_SESSION_SUPERVISOR_H
 #define QUINTET_LAB_SESSION_SUPERVISOR_H
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,8 +14,10 @@ namespace quintet::lab {
 
 inline constexpr double kCrashSeconds = 10;  // a second crash within this time would repeat forever
 inline constexpr double kStuckSeconds = 60;  // beyond the time limit of a launch: loading can take long
-// What a worker reports before it gives shaders to the driver, which has as much time as a launch.
+// What a worker reports before it gives shaders to the driver, which has as much time as a launch, but not less than
+// kCompileSeconds: a busy machine compiles slowly.
 inline constexpr std::string_view kCompilingStage = "compiling shaders";
+inline constexpr double kCompileSeconds = 10;
 
 // How a worker ended.
 struct WorkerEnd {
@@ -54,7 +57,9 @@ class SessionSupervisor {
  private:
   enum class State { running, ended };
 
-  double stuckLimit() const { return limits_.timeout + (compiling_ ? 0 : kStuckSeconds); }
+  double stuckLimit() const {
+    return compiling_ ? std::max(limits_.timeout, kCompileSeconds) : limits_.timeout + kStuckSeconds;
+  }
   Actions started(double now, bool hold, const std::string& state, const std::string& message);
   std::string resumed(bool keepParameters) const;
 
