@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renderers: limits, progress, cancellation, checkpoints, and edits, which give the image of a scene that was built with them.
-#include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
 
 #include "scenes.h"
 
@@ -281,7 +284,8 @@ TEST_F(ApiRenderer, ReportsWarningsOfARebuild) {
 }
 
 TEST_F(ApiRenderer, ChangesImageParameters) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_parameter.exr";
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("api_parameter_" + std::to_string(::getpid()) + ".exr");
   Image{1, 1, {0.25f, 0.5f, 1, 1}}.write(file);
   std::string parameters;  // more than half of the slots for images
   for (int i = 0; i < 40; ++i)

@@ -5,6 +5,7 @@
 //   VK_EXT_shader_module_identifier   identifiers are numbers, and pipelines can be created from them
 //
 // The specification of the interface is in the documentation of the Vulkan loader, LoaderLayerInterface.md.
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <mutex>

@@ -100,7 +100,9 @@ TEST(Specialization, RemovesWhatTheSceneLacks) {
       EXPECT_TRUE(result.shipped);
       EXPECT_EQ(has(result.spirv, kSheenMark), sheen);
       // With both, the optimizer knows only one of the summands.
-      if (!sheen) EXPECT_EQ(has(result.spirv, kTextureMark) || has(result.spirv, kTextureMark + 1), textured);
+      if (!sheen) {
+        EXPECT_EQ(has(result.spirv, kTextureMark) || has(result.spirv, kTextureMark + 1), textured);
+      }
     }
 }
 
