@@ -19,7 +19,7 @@ function lessonFiles(lesson: string): { files: Map<string, string>; main: string
 
 test("every lesson of the course has a task", () => {
   const overview = readFileSync(`${REPOSITORY}/docs/lessons/README.md`, "utf8");
-  const lessons = [...overview.matchAll(/^\| !\[\]\([^)]*\) \| \[\d\d · [^\]]*\]\((\w+)\.md\) \|$/gm)].map((row) => row[1]!);
+  const lessons = [...overview.matchAll(/\| \[\d\d · [^\]]*\]\((\w+)\.md\)/g)].map((cell) => cell[1]!);
   assert.equal(lessons.length, 28);
   assert.deepEqual(Object.keys(kLessonTasks).sort(), lessons.sort());
 });
