@@ -42,8 +42,15 @@ function programText(name) {
   return { name, title: name.replace(/^<programs\//, "").replace(/>$/, ""), builtIn: isBuiltIn(name), form: main === "program.toml" ? "folder" : "lecture", main: `${name}/${main}`, scene: scene?.path ?? "", files, diagnostics: [] };
 }
 
-const kRow = /^\| !\[\]\(\.\.\/([^)]*)\) \| \[(\d\d) · ([^\]]*)\]\((\w+)\.md\) \|$/gm;
-const course = [...readFileSync(path.join(root, "docs/lessons/README.md"), "utf8").matchAll(kRow)];
+// A cell of the tables in docs/lessons/README.md. A lesson has its image in the cell above.
+const kImage = /!\[[^\]]*\]\(\.\.\/([^)]*)\)/;
+const kLesson = /\[(\d\d) · ([^\]]*)\]\((\w+)\.md\)/;
+const rows = readFileSync(path.join(root, "docs/lessons/README.md"), "utf8").split("\n").map((line) => line.split("|"));
+const course = rows.flatMap((cells, row) => cells.flatMap((cell, column) => {
+  const lesson = kLesson.exec(cell);
+  const image = lesson && kImage.exec(rows[row - 1]?.[column] ?? "");
+  return image ? [["", image[1], ...lesson.slice(1)]] : [];
+}));
 const lessons = () =>
   course.map(([, image, number, title, name]) => ({
     name,
