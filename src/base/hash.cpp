@@ -29,8 +29,11 @@ Hasher& Hasher::operator=(Hasher&&) noexcept = default;
 Hasher& Hasher::add(std::string_view text) { return add(std::as_bytes(std::span(text.data(), text.size()))); }
 
 Hasher& Hasher::add(std::span<const std::byte> bytes) {
-  add(static_cast<std::uint64_t>(bytes.size()));
-  if (!bytes.empty()) XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
+  return add(static_cast<std::uint64_t>(bytes.size())).append(bytes);
+}
+
+Hasher& Hasher::append(std::span<const std::byte> part) {
+  if (!part.empty()) XXH3_128bits_update(state_->xxh, part.data(), part.size());
   return *this;
 }
 
@@ -38,8 +41,7 @@ Hasher& Hasher::add(std::span<const std::byte> bytes) {
 Hasher& Hasher::add(std::uint64_t value) {
   std::array<std::uint8_t, 8> bytes;
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-  XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
-  return *this;
+  return append(std::as_bytes(std::span(bytes)));
 }
 
 Hash Hasher::finish() const {

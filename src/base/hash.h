@@ -32,6 +32,9 @@ class Hasher {
   Hasher& add(std::string_view text);
   Hasher& add(std::span<const std::byte> bytes);
   Hasher& add(std::uint64_t value);
+  // Without its length: the next part of bytes that are not in memory at once. add(n), with their total number n, followed by all
+  // parts equals add(bytes).
+  Hasher& append(std::span<const std::byte> part);
   Hash finish() const;
 
  private:

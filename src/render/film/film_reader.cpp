@@ -14,7 +14,6 @@
 #include <cstring>
 #include <exception>
 #include <future>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,9 +23,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/memory_budget.h"
 #include "base/parallel.h"
-#include "base/stream_hash.h"
 #include "render/film/film_format.h"
 #include "render/film/fixed_sum.h"
 
@@ -50,7 +49,7 @@ class FilmInput {
       memory_ = readFile(path);
       bytes_ = memory_.size();
     }
-    hash_.emplace(bytes_ - std::min<std::uint64_t>(bytes_, kFilmHashBytes));  // all but the checksum itself
+    hash_.add(bytes_ - std::min<std::uint64_t>(bytes_, kFilmHashBytes));  // all but the checksum itself
   }
   ~FilmInput() {
     if (file_) std::fclose(file_);
@@ -72,14 +71,14 @@ class FilmInput {
       std::copy_n(memory_.begin() + static_cast<std::ptrdiff_t>(position_), out.size(), out.begin());
     }
     position_ += out.size();
-    if (hashed) hash_->add(out);
+    if (hashed) hash_.append(out);
   }
   // Hashes up to the checksum. Returns whether that agrees.
   bool checksumAgrees() {
     std::vector<std::byte> buffer(kReadBytes);
     while (position_ + kFilmHashBytes < bytes_)
       read(std::span(buffer).first(std::min<std::size_t>(kReadBytes, bytes_ - kFilmHashBytes - position_)));
-    const auto hash = filmHash(hash_->finish());
+    const auto hash = filmHash(hash_.finish());
     std::array<std::byte, kFilmHashBytes> stored{};
     read(stored, false);
     return std::memcmp(hash.data(), stored.data(), kFilmHashBytes) == 0;
@@ -94,7 +93,7 @@ class FilmInput {
   std::FILE* file_ = nullptr;
   std::vector<std::byte> memory_;
   std::uint64_t bytes_ = 0, position_ = 0;
-  std::optional<StreamHash> hash_;
+  Hasher hash_;
 };
 
 // What happens to an array of the file.

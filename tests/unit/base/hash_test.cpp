@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -30,6 +33,19 @@ TEST(HashTest, DependsOnEveryBit) {
     changed[bit / 8] = static_cast<std::byte>(1 << bit % 8);
     EXPECT_NE(Hasher().add(changed).finish(), expected) << bit;
   }
+}
+
+TEST(HashTest, PartsHaveTheHashOfAllBytes) {
+  std::vector<std::byte> bytes(100'000);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 7 + i / 256);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{17}, bytes.size()})
+    for (const std::size_t step : {std::size_t{1}, std::size_t{999}, std::size_t{200'000}}) {
+      const std::span all = std::span(bytes).first(size);
+      Hasher hash;
+      hash.add(std::uint64_t{size});
+      for (std::size_t at = 0; at < size; at += step) hash.append(all.subspan(at, std::min(step, size - at)));
+      EXPECT_EQ(hash.finish(), Hasher().add(std::span<const std::byte>(all)).finish()) << size << " " << step;
+    }
 }
 
 TEST(HashTest, ContinuesAfterFinishAndMove) {
