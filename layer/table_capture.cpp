@@ -14,8 +14,10 @@ namespace {
 constexpr std::uint32_t kMark = 0x51544B4Du;
 constexpr VkDeviceSize kMaxCopy = VkDeviceSize{64} << 20;  // of one region
 constexpr VkDeviceSize kMaxTable = VkDeviceSize{4} << 20;  // of a buffer that an indirect trace can use
-constexpr VkDeviceSize kAlignment = 16;
+constexpr VkDeviceSize kAlignment = 16;                    // of parts in a copy
 constexpr std::string_view kUnreachable = "Q801";
+
+VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
 
 check::TableKind kindOf(const PipelineCopy& copy, const GroupCopy& group) {
   if (group.type != VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR) return check::TableKind::hit;
@@ -30,12 +32,14 @@ const VkAccelerationStructureGeometryKHR& geometryOf(const VkAccelerationStructu
   return info.pGeometries ? info.pGeometries[g] : *info.ppGeometries[g];
 }
 
-}  // namespace
-
-TableCapture::~TableCapture() {
-  poll();
-  for (const Copy& copy : copies_) destroy(copy);
+// The instances of a top-level structure; null if the build is invalid.
+const VkAccelerationStructureGeometryInstancesDataKHR* instancesOf(
+    const VkAccelerationStructureBuildGeometryInfoKHR& info) {
+  if (info.geometryCount != 1 || geometryOf(info, 0).geometryType != VK_GEOMETRY_TYPE_INSTANCES_KHR) return nullptr;
+  return &geometryOf(info, 0).geometry.instances;
 }
+
+}  // namespace
 
 ReadableBuffer::ReadableBuffer(const VkBufferCreateInfo& info) : info_(info), usage_(info.usage) {
   constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR |
@@ -53,6 +57,11 @@ ReadableBuffer::ReadableBuffer(const VkBufferCreateInfo& info) : info_(info), us
     flags2_.flags |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     info_.pNext = &flags2_;
   }
+}
+
+TableCapture::~TableCapture() {
+  poll();
+  for (const Copy& copy : copies_) destroy(copy);
 }
 
 void TableCapture::addBuffer(VkBuffer buffer, VkDeviceSize bytes, VkBufferUsageFlags usage) {
@@ -97,7 +106,7 @@ std::optional<TableCapture::Found> TableCapture::find(VkDeviceAddress address) c
 bool TableCapture::record(Copy& copy, const std::vector<Part>& parts) {
   const DeviceTable& vk = device_.table;
   VkDeviceSize total = 0;
-  for (const Part& part : parts) total += (part.bytes + kAlignment - 1) / kAlignment * kAlignment;
+  for (const Part& part : parts) total += aligned(part.bytes);
   copy.markOffset = total;
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -135,7 +144,7 @@ bool TableCapture::record(Copy& copy, const std::vector<Part>& parts) {
   for (const Part& part : parts) {
     const VkBufferCopy region{part.from, at, part.bytes};
     vk.CmdCopyBuffer(copy.commands, part.source, copy.buffer, 1, &region);
-    at += (part.bytes + kAlignment - 1) / kAlignment * kAlignment;
+    at += aligned(part.bytes);
   }
   barrier(kCopy, VK_ACCESS_TRANSFER_WRITE_BIT, kCopy, VK_ACCESS_TRANSFER_WRITE_BIT);
   vk.CmdFillBuffer(copy.commands, copy.buffer, total, 4, kMark);
@@ -168,7 +177,7 @@ void TableCapture::trace(VkCommandBuffer commands,
     const VkDeviceSize bytes = std::min({region.bytes, found->available, kMaxCopy});
     parts.push_back({found->buffer, found->offset, bytes});
     copy.data[i] = {at, static_cast<std::size_t>(bytes)};
-    at += static_cast<std::size_t>((bytes + kAlignment - 1) / kAlignment * kAlignment);
+    at += static_cast<std::size_t>(aligned(bytes));
   }
   if (record(copy, parts)) copies_.push_back(std::move(copy));
 }
@@ -183,7 +192,6 @@ void TableCapture::traceIndirect(VkCommandBuffer commands, VkDeviceAddress addre
   if (!command || !command->readable || command->available < sizeof(VkTraceRaysIndirectCommand2KHR)) return;
   copy.isIndirect = true;
   std::vector<Part> parts{{command->buffer, command->offset, sizeof(VkTraceRaysIndirectCommand2KHR)}};
-  const auto aligned = [](VkDeviceSize bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; };
   VkDeviceSize at = aligned(parts[0].bytes);
   for (const auto& [start, buffer] : addresses_) {
     const Buffer& table = buffers_.at(buffer);
@@ -198,34 +206,26 @@ void TableCapture::traceIndirect(VkCommandBuffer commands, VkDeviceAddress addre
 
 // The regions of an indirect trace, from the command that the device used.
 void TableCapture::readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
-                               std::array<check::TableRegion, check::kTableKinds>& regions) const {
+                               std::array<check::TableRegion, check::kTableKinds>& regions) {
   VkTraceRaysIndirectCommand2KHR command{};
   std::memcpy(&command, bytes.data(), sizeof command);
-  regions = {
-      check::TableRegion{
-          command.raygenShaderRecordAddress, command.raygenShaderRecordSize, command.raygenShaderRecordSize, {}, {}},
-      check::TableRegion{command.missShaderBindingTableAddress,
-                         command.missShaderBindingTableStride,
-                         command.missShaderBindingTableSize,
-                         {},
-                         {}},
-      check::TableRegion{command.hitShaderBindingTableAddress,
-                         command.hitShaderBindingTableStride,
-                         command.hitShaderBindingTableSize,
-                         {},
-                         {}},
-      check::TableRegion{command.callableShaderBindingTableAddress,
-                         command.callableShaderBindingTableStride,
-                         command.callableShaderBindingTableSize,
-                         {},
-                         {}}};
-  for (check::TableRegion& region : regions) {
+  const auto region = [](VkDeviceAddress address, VkDeviceSize stride, VkDeviceSize size) {
+    return check::TableRegion{address, stride, size, {}, {}};
+  };
+  regions = {region(command.raygenShaderRecordAddress, command.raygenShaderRecordSize, command.raygenShaderRecordSize),
+             region(command.missShaderBindingTableAddress, command.missShaderBindingTableStride,
+                    command.missShaderBindingTableSize),
+             region(command.hitShaderBindingTableAddress, command.hitShaderBindingTableStride,
+                    command.hitShaderBindingTableSize),
+             region(command.callableShaderBindingTableAddress, command.callableShaderBindingTableStride,
+                    command.callableShaderBindingTableSize)};
+  for (check::TableRegion& found : regions) {
     for (const CopiedTable& table : copy.tables) {
-      if (region.address < table.address || region.address - table.address >= table.bytes) continue;
-      const std::uint64_t offset = region.address - table.address;
-      region.available = table.bytes - offset;
+      if (found.address < table.address || found.address - table.address >= table.bytes) continue;
+      const std::uint64_t offset = found.address - table.address;
+      found.available = table.bytes - offset;
       const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(table.offset + offset);
-      region.data.assign(begin, begin + static_cast<std::ptrdiff_t>(std::min(region.bytes, *region.available)));
+      found.data.assign(begin, begin + static_cast<std::ptrdiff_t>(std::min(found.bytes, *found.available)));
     }
   }
 }
@@ -248,15 +248,18 @@ void TableCapture::addStructure(VkAccelerationStructureKHR structure, VkAccelera
   if (type != VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) topLevel_.insert(structure);
 }
 
+bool TableCapture::buildBottom(const VkAccelerationStructureBuildGeometryInfoKHR& info) {
+  if (info.type != VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) return false;
+  tops_.erase(info.dstAccelerationStructure);
+  topLevel_.erase(info.dstAccelerationStructure);
+  bottoms_[info.dstAccelerationStructure] = bottomOf(info);
+  return true;
+}
+
 void TableCapture::buildIndirect(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos) {
   const std::scoped_lock lock(mutex_);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const VkAccelerationStructureKHR built = infos[i].dstAccelerationStructure;
-    tops_.erase(built);
-    if (infos[i].type != VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) continue;
-    bottoms_[built] = bottomOf(infos[i]);
-    topLevel_.erase(built);
-  }
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (!buildBottom(infos[i])) tops_.erase(infos[i].dstAccelerationStructure);
 }
 
 void TableCapture::buildOnHost(std::uint32_t count, const VkAccelerationStructureBuildGeometryInfoKHR* infos,
@@ -264,24 +267,17 @@ void TableCapture::buildOnHost(std::uint32_t count, const VkAccelerationStructur
   const std::scoped_lock lock(mutex_);
   for (std::uint32_t i = 0; i < count; ++i) {
     const VkAccelerationStructureBuildGeometryInfoKHR& info = infos[i];
-    if (info.type == VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) {
-      tops_.erase(info.dstAccelerationStructure);
-      topLevel_.erase(info.dstAccelerationStructure);
-      bottoms_[info.dstAccelerationStructure] = bottomOf(info);
-      continue;
-    }
-    const bool known = info.geometryCount == 1 && geometryOf(info, 0).geometryType == VK_GEOMETRY_TYPE_INSTANCES_KHR &&
-                       geometryOf(info, 0).geometry.instances.data.hostAddress;
-    if (!known) {
+    if (buildBottom(info)) continue;
+    const VkAccelerationStructureGeometryInstancesDataKHR* data = instancesOf(info);
+    if (!data || !data->data.hostAddress) {
       tops_.erase(info.dstAccelerationStructure);
       continue;
     }
-    const VkAccelerationStructureGeometryInstancesDataKHR& data = geometryOf(info, 0).geometry.instances;
-    const auto* bytes = static_cast<const std::byte*>(data.data.hostAddress) + ranges[i][0].primitiveOffset;
+    const auto* bytes = static_cast<const std::byte*>(data->data.hostAddress) + ranges[i][0].primitiveOffset;
     Top top{std::vector<VkAccelerationStructureInstanceKHR>(ranges[i][0].primitiveCount), true};
     for (std::size_t k = 0; k < top.instances.size(); ++k) {
       const void* from = bytes + k * sizeof(VkAccelerationStructureInstanceKHR);
-      if (data.arrayOfPointers) std::memcpy(&from, bytes + k * sizeof from, sizeof from);
+      if (data->arrayOfPointers) std::memcpy(&from, bytes + k * sizeof from, sizeof from);
       std::memcpy(&top.instances[k], from, sizeof(VkAccelerationStructureInstanceKHR));
     }
     setTop(info.dstAccelerationStructure, std::move(top));
@@ -305,16 +301,11 @@ void TableCapture::build(VkCommandBuffer commands, std::uint32_t count,
   const std::scoped_lock lock(mutex_);
   for (std::uint32_t i = 0; i < count; ++i) {
     const VkAccelerationStructureBuildGeometryInfoKHR& info = infos[i];
-    if (info.type == VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR) {
-      tops_.erase(info.dstAccelerationStructure);
-      topLevel_.erase(info.dstAccelerationStructure);
-      bottoms_[info.dstAccelerationStructure] = bottomOf(info);
-      continue;
-    }
+    if (buildBottom(info)) continue;
     // The instances of the last build count until this one is complete, unless they stay unknown.
     const auto forget = [&] { tops_.erase(info.dstAccelerationStructure); };
-    if (info.geometryCount != 1 || geometryOf(info, 0).geometryType != VK_GEOMETRY_TYPE_INSTANCES_KHR ||
-        geometryOf(info, 0).geometry.instances.arrayOfPointers) {
+    const VkAccelerationStructureGeometryInstancesDataKHR* data = instancesOf(info);
+    if (!data || data->arrayOfPointers) {
       forget();
       continue;
     }
@@ -323,7 +314,7 @@ void TableCapture::build(VkCommandBuffer commands, std::uint32_t count,
     copy.structure = info.dstAccelerationStructure;
     copy.instances = ranges[i][0].primitiveCount;
     const VkDeviceSize bytes = copy.instances * sizeof(VkAccelerationStructureInstanceKHR);
-    const auto found = find(geometryOf(info, 0).geometry.instances.data.deviceAddress + ranges[i][0].primitiveOffset);
+    const auto found = find(data->data.deviceAddress + ranges[i][0].primitiveOffset);
     const bool known = found && found->readable && bytes > 0 && bytes <= std::min(found->available, kMaxCopy);
     if (known && record(copy, {{found->buffer, found->offset, bytes}}))
       copies_.push_back(std::move(copy));
@@ -335,6 +326,7 @@ void TableCapture::build(VkCommandBuffer commands, std::uint32_t count,
 void TableCapture::copyStructure(VkAccelerationStructureKHR from, VkAccelerationStructureKHR to) {
   const std::scoped_lock lock(mutex_);
   tops_.erase(to);
+  bottoms_.erase(to);
   if (const auto found = bottoms_.find(from); found != bottoms_.end()) {
     bottoms_[to] = found->second;
     topLevel_.erase(to);

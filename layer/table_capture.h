@@ -127,10 +127,12 @@ class TableCapture {
   void finishTrace(const Copy& copy, const std::vector<std::byte>& bytes);
   void finishBuild(const Copy& copy, const std::vector<std::byte>& bytes);
   const std::vector<check::TableGroup>& groupsOf(LinkedPipeline& pipeline);
-  void readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
-                   std::array<check::TableRegion, check::kTableKinds>& regions) const;
+  static void readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
+                          std::array<check::TableRegion, check::kTableKinds>& regions);
   void link(LinkedPipeline& pipeline, const check::TableFindings& found);
   static Bottom bottomOf(const VkAccelerationStructureBuildGeometryInfoKHR& info);
+  // Returns false if the build is not one of a bottom-level structure.
+  bool buildBottom(const VkAccelerationStructureBuildGeometryInfoKHR& info);
   void setTop(VkAccelerationStructureKHR structure, Top top);
   // What rays can hit, one entry per state that the only top-level structure can have had at the trace. Empty if unknown.
   std::vector<check::PipelineGroups> withInstances(const check::PipelineGroups& groups);

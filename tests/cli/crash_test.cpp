@@ -38,7 +38,8 @@ class Crash : public CliTest {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     EXPECT_THAT(result.err, HasSubstr("quintet: "));
     if (result.status != 4) return;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("quintet: wild: crash"), HasSubstr("signal 11")));
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("quintet: wild: crash"), HasSubstr("while rendering"), HasSubstr("signal 11")));
     EXPECT_THAT(result.err, HasSubstr("docs/debugging.md"));
   }
 };

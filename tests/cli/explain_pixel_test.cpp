@@ -82,7 +82,7 @@ TEST_F(ExplainPixel, PrintsTheExplanationAlsoIfTheImageFails) {
   const RunResult result = explain({"--program", "flat.rt.glsl", "--image", "rays.png", "--json"});
   EXPECT_EQ(result.status, 1);
   EXPECT_EQ(nlohmann::json::parse(result.out)["program"], "flat") << "one object";
-  EXPECT_THAT(result.err, HasSubstr("camera"));
+  EXPECT_THAT(result.err, HasSubstr("not that of the scene's camera"));
 }
 
 // The image shows the frame that was explained.

@@ -22,7 +22,7 @@ using ::testing::Not;
 
 class Farm : public CliTest {
  protected:
-  // The options of a render of 30 samples: 8 batches, and the last one has 2 samples.
+  // Of a plan, and of the render that its image is compared with.
   static std::vector<std::string> options(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"--program", "normals", "--size", "40x30"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -69,6 +69,7 @@ class Farm : public CliTest {
   }
 };
 
+// 30 samples are 8 batches, and the last one has 2 samples.
 TEST_F(Farm, PartsGiveTheBytesOfOneRender) {
   expectPlan({"--spp", "30", "--parts", "3", "--exposure", "0.5"});
   for (const char* part : {"2", "0", "1"}) runPart(part);

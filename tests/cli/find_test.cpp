@@ -57,7 +57,7 @@ TEST_F(Find, CtrlCEndsTheSearch) {
   process.signal(SIGINT);
   const RunResult result = process.finish();
   EXPECT_EQ(result.status, 130) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("interrupted"));
+  EXPECT_THAT(result.err, HasSubstr("interrupted: reporting what was found"));
   EXPECT_THAT(result.err, ::testing::Not(HasSubstr("without an image")));
 }
 

@@ -195,7 +195,7 @@ TEST_F(Run, ReportsTheFirstDiscardedSample) {
   write(folder_ / "flat" / "flat.rgen", rgen);
   const RunResult result = quintet({"run", "flat", "--size", "16x4", "--spp", "4", "-o", "out.png", "--json"});
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.err, AllOf(HasSubstr("8 samples"), HasSubstr("(7, 2)")));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("8 samples were not finite"), HasSubstr("pixel (7, 2)")));
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["droppedSamples"], 8);
   EXPECT_EQ(json["firstDroppedSample"], nlohmann::json({7, 2}));
@@ -206,7 +206,7 @@ TEST_F(Run, ReportsTheFirstDiscardedSample) {
           .status,
       0);
   const RunResult merged = quintet({"merge", "out.qfilm", "-o", "merged.png", "--json"});
-  EXPECT_THAT(merged.err, AllOf(HasSubstr("8 samples"), HasSubstr("(7, 2)")));
+  EXPECT_THAT(merged.err, AllOf(HasSubstr("8 samples were not finite"), HasSubstr("pixel (7, 2)")));
   EXPECT_EQ(nlohmann::json::parse(merged.out)["warnings"].size(), 1u);
 }
 

@@ -141,7 +141,7 @@ TEST_F(SeveralDevices, FailIfAllAreLost) {
   const RunResult result =
       losing(3, "out.checkpoint.qfilm", command("0,0,0", "out.png", {"--spp", "400", "--checkpoint", "0"}));
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("3 devices were lost"));
+  EXPECT_THAT(result.err, HasSubstr("all 3 devices were lost"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out.checkpoint.qfilm"));
 }
@@ -254,7 +254,7 @@ TEST_F(FramesOnDevices, AreRenderedAgainByOthers) {
 TEST_F(FramesOnDevices, FailIfAllAreLost) {
   const RunResult result = losing(2, "two0.exr", animation("0,0", "two#.exr", {"--spp", "400"}));
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("2 devices were lost"));
+  EXPECT_THAT(result.err, HasSubstr("all 2 devices were lost"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "two0.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "two4.exr"));
 }

@@ -134,7 +134,7 @@ TEST_F(Usage, Variants) {
   expectError(quintet({"bench", "normals", "scene.gltf", "--variant", "red"}), 2, {"no variant 'red'", "Red, Green"});
   const RunResult noFile = quintet({"check", "normals", "--variant", "Red", "--device", "none"});
   EXPECT_EQ(noFile.status, 2);
-  EXPECT_THAT(noFile.err, testing::HasSubstr("'Red'"));
+  EXPECT_THAT(noFile.err, testing::HasSubstr("no variant 'Red'"));
   const RunResult unknown = quintet({"check", "normals", "scene.gltf", "--variant", "red", "--device", "none"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, testing::HasSubstr("no variant 'red'"));

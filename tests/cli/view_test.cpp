@@ -74,7 +74,7 @@ TEST_F(View, KeepGoingContinues) {
   const RunResult result =
       view("{\"do\":\"save\",\"file\":\"a.bmp\"}\n{\"do\":\"save\",\"file\":\"a.png\"}\n", {"--keep-going"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("line 1: a.bmp: "));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("line 1: a.bmp: "), HasSubstr("extension")));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
 }
 
@@ -119,9 +119,9 @@ TEST_F(View, SavesAnImageWithRays) {
       "{\"do\":\"program\",\"name\":\"ao\"}\n"
       "{\"do\":\"save\",\"file\":\"late.png\",\"rays\":true}\n",
       {"--keep-going"});
-  EXPECT_THAT(result.err, HasSubstr("line 1: "));
+  EXPECT_THAT(result.err, HasSubstr("line 1: no pixel"));
   EXPECT_THAT(result.err, AllOf(HasSubstr("line 3: a.exr: "), HasSubstr("PNG")));
-  EXPECT_THAT(result.err, HasSubstr("line 8: "));
+  EXPECT_THAT(result.err, HasSubstr("line 8: the program has changed"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "early.png"));
   const io::Image plain = readImage("plain.png"), rays = readImage("rays.png");
   ASSERT_EQ(rays.data.size(), plain.data.size());

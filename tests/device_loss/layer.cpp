@@ -6,8 +6,6 @@
 //   QUINTET_LOSE_WHEN    the file
 //   QUINTET_LOSE_COUNT   number of devices of the process that are lost (1)
 //   QUINTET_FAIL_DEVICE  number of a device of this kind that cannot be created: 1 is the first one of the process (none)
-//
-// The specification of the interface is in the documentation of the Vulkan loader, LoaderLayerInterface.md.
 #include <unistd.h>
 
 #include <cstdint>
@@ -17,10 +15,15 @@
 #include <mutex>
 #include <string_view>
 
-#include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
+#include "loader_interface.h"
+
 namespace {
+
+using quintet::test::asVoid;
+using quintet::test::chainEntry;
+using quintet::test::negotiate;
 
 // Dispatchable handles of one instance or device point to the same table of the loader.
 using Key = const void*;
@@ -139,16 +142,6 @@ VKAPI_ATTR void VKAPI_CALL destroyDevice(VkDevice handle, const VkAllocationCall
 
 // ---- Functions of instances
 
-// The entry of the loader's chain that names the next layer.
-template <class Info>
-Info* chainEntry(const void* chain, VkStructureType type) {
-  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext) {
-    auto* info = reinterpret_cast<Info*>(const_cast<VkBaseInStructure*>(entry));
-    if (entry->sType == type && info->function == VK_LAYER_LINK_INFO) return info;
-  }
-  return nullptr;
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                               VkInstance* instance) {
   auto* entry = chainEntry<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
@@ -204,11 +197,6 @@ struct Entry {
   PFN_vkVoidFunction function;
 };
 
-template <class Function>
-PFN_vkVoidFunction asVoid(Function* function) {
-  return reinterpret_cast<PFN_vkVoidFunction>(function);
-}
-
 constexpr char kWaitSemaphores[] = "vkWaitSemaphores", kGetSemaphoreCounterValue[] = "vkGetSemaphoreCounterValue",
                kWaitForFences[] = "vkWaitForFences", kGetFenceStatus[] = "vkGetFenceStatus",
                kQueueWaitIdle[] = "vkQueueWaitIdle", kQueuePresent[] = "vkQueuePresentKHR",
@@ -260,10 +248,5 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance
 
 extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* negotiation) {
-  if (negotiation->loaderLayerInterfaceVersion < 2) return VK_ERROR_INITIALIZATION_FAILED;
-  negotiation->loaderLayerInterfaceVersion = 2;
-  negotiation->pfnGetInstanceProcAddr = getInstanceProcAddr;
-  negotiation->pfnGetDeviceProcAddr = getDeviceProcAddr;
-  negotiation->pfnGetPhysicalDeviceProcAddr = nullptr;
-  return VK_SUCCESS;
+  return negotiate(*negotiation, getInstanceProcAddr, getDeviceProcAddr);
 }

@@ -3,8 +3,6 @@
 //
 //   vkBuildAccelerationStructuresKHR  succeeds and builds nothing, so rays must not be traced
 //   VK_EXT_shader_module_identifier   identifiers are numbers, and pipelines can be created from them
-//
-// The specification of the interface is in the documentation of the Vulkan loader, LoaderLayerInterface.md.
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -12,10 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
+#include "../device_loss/loader_interface.h"
+
 namespace {
+
+using quintet::test::asVoid;
+using quintet::test::chainEntry;
+using quintet::test::negotiate;
 
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
@@ -27,15 +30,6 @@ Instance instance;  // of the last instance; tests have one at a time
 PFN_vkGetDeviceProcAddr nextOfDevice = nullptr;
 PFN_vkCreateRayTracingPipelinesKHR createPipelines = nullptr;
 std::map<std::uint64_t, VkShaderModule> modules;  // by identifier
-
-template <class Info>
-Info* chainEntry(const void* chain, VkStructureType type) {
-  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext) {
-    auto* info = reinterpret_cast<Info*>(const_cast<VkBaseInStructure*>(entry));
-    if (entry->sType == type && info->function == VK_LAYER_LINK_INFO) return info;
-  }
-  return nullptr;
-}
 
 VKAPI_ATTR VkResult VKAPI_CALL buildStructures(VkDevice, VkDeferredOperationKHR, std::uint32_t,
                                                const VkAccelerationStructureBuildGeometryInfoKHR*,
@@ -101,11 +95,6 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical, const VkD
   return result;
 }
 
-template <class Function>
-PFN_vkVoidFunction asVoid(Function* function) {
-  return reinterpret_cast<PFN_vkVoidFunction>(function);
-}
-
 PFN_vkVoidFunction deviceFunction(std::string_view name) {
   if (name == "vkBuildAccelerationStructuresKHR") return asVoid(buildStructures);
   if (name == "vkGetShaderModuleIdentifierEXT") return asVoid(getIdentifier);
@@ -134,10 +123,5 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance handle, 
 
 extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* negotiation) {
-  if (negotiation->loaderLayerInterfaceVersion < 2) return VK_ERROR_INITIALIZATION_FAILED;
-  negotiation->loaderLayerInterfaceVersion = 2;
-  negotiation->pfnGetInstanceProcAddr = getInstanceProcAddr;
-  negotiation->pfnGetDeviceProcAddr = getDeviceProcAddr;
-  negotiation->pfnGetPhysicalDeviceProcAddr = nullptr;
-  return VK_SUCCESS;
+  return negotiate(*negotiation, getInstanceProcAddr, getDeviceProcAddr);
 }

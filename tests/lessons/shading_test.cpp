@@ -71,7 +71,6 @@ void expectShadow(std::uint32_t frame, const scene::Scene& scene) {
 
 TEST(LessonShadow, CastsShadowsInTheFirstFrame) { expectShadow(0, lessonScene("05_shadow")); }
 TEST(LessonShadow, MovesTheLamp) { expectShadow(16, lessonScene("05_shadow")); }
-// What is behind the lamp casts no shadow.
 // A plate just below the lamp hides it from a part of the floor.
 TEST(LessonShadow, ReachesTheLamp) {
   scene::Scene scene = lessonScene("05_shadow");
@@ -81,6 +80,7 @@ TEST(LessonShadow, ReachesTheLamp) {
   expectShadow(0, scene);
 }
 
+// What is behind the lamp casts no shadow.
 TEST(LessonShadow, EndsAtTheLamp) {
   scene::Scene scene = lessonScene("05_shadow");
   scene::Instance ceiling = scene.instances.front();

@@ -209,7 +209,6 @@ TEST(Sampler, PairsAreIndependent) {
     }
 }
 
-// PCG numbers are also independent between the samples of one pixel. Sobol points are not, by design.
 // Draws of any kind use the next dimension, whatever was drawn before.
 TEST(Sampler, DrawsUseSuccessiveDimensions) {
   struct Out {
@@ -252,6 +251,7 @@ TEST(Sampler, DrawsUseSuccessiveDimensions) {
   }
 }
 
+// PCG numbers are also independent between the samples of one pixel. Sobol points are not, by design.
 TEST(Pcg, SuccessiveSamplesAreIndependent) {
   constexpr std::uint32_t kCount = 1 << 17;
   const std::vector<float> x = component(evaluate(series({12, 34}, 6, kCount + 8), {{"PCG", "1"}}), 0);

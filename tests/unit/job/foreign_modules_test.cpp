@@ -165,13 +165,16 @@ TEST(ForeignModules, UnknownInstructionsAreANote) {
   ForeignModule module("hlsl_library");
   std::vector<std::uint32_t>& words = module.words();
   const std::vector<std::uint32_t> unknown{2u << 16 | 60000u, 1};
-  words.insert(words.end() - 2, unknown.begin(),
-               unknown.end());  // before OpReturn and OpFunctionEnd of the last function
-  for (const bool described : {true, false})
-    for (const Diagnostic& d : module.check(described)) {
+  // Before OpReturn and OpFunctionEnd of the last function.
+  words.insert(words.end() - 2, unknown.begin(), unknown.end());
+  for (const bool described : {true, false}) {
+    const std::vector<Diagnostic> notes = module.check(described);
+    EXPECT_THAT(notes, testing::Not(IsEmpty()));
+    for (const Diagnostic& d : notes) {
       EXPECT_EQ(d.severity, Severity::note) << d.text;
       EXPECT_THAT(d.text, HasSubstr("Invalid opcode"));
     }
+  }
 }
 
 TEST(ForeignModules, TracesOfMotionBlurAreFollowed) {

@@ -22,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using shader::TemporaryFolder;
-using testing::AllOf;
 using testing::HasSubstr;
 
 std::vector<std::uint32_t> compileRaw(const fs::path& file, const std::string& text, std::string& error) {
@@ -96,16 +95,16 @@ TEST_F(ModuleFiles, LinksTheModulesOfAFolder) {
 
 TEST_F(ModuleFiles, ReportsMistakesOfTheGroupsFileWithTheirPath) {
   EXPECT_THAT(firstText(R"({"ray_generation": "b.rgen.spv"})"),
-              AllOf(HasSubstr("/ray_generation: "), HasSubstr("'b.rgen.spv'")));
+              HasSubstr("/ray_generation: no module is named 'b.rgen.spv'"));
   EXPECT_THAT(firstText(R"({"ray_generation": "a.rmiss.spv"})"),
-              AllOf(HasSubstr("/ray_generation: "), HasSubstr("'a.rmiss.spv'")));
+              HasSubstr("/ray_generation: 'a.rmiss.spv' has no ray generation shader"));
 }
 
 TEST_F(ModuleFiles, ReportsMalformedModulesAndContinues) {
   std::ofstream(folder() / "b.spv", std::ios::binary) << std::string("\x03\x02\x23\x07\0\0\0\0", 8);
   const auto found = check();
   ASSERT_THAT(found, testing::SizeIs(2));
-  EXPECT_THAT(found[0].format(), HasSubstr("b.spv: error: "));
+  EXPECT_THAT(found[0].format(), HasSubstr("b.spv: error: this is not a valid SPIR-V module"));
   EXPECT_EQ(found[1].id, "Q101");
 }
 

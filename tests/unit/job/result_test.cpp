@@ -70,13 +70,15 @@ TEST(ResultWarnings, CountPixelsThatAreNotFinite) {
       resultWarnings(result),
       ElementsAre("3 pixels of the output 'color' are not finite; the first is at pixel (34, 120), counted from "
                   "the top left corner; see 'quintet explain Q002'",
-                  AllOf(HasSubstr("1 pixel"), HasSubstr("'depth'"), HasSubstr("(0, 7)"))));
+                  AllOf(HasSubstr("1 pixel of"), HasSubstr("'depth' is not finite; it is at"), HasSubstr("(0, 7)"))));
   EXPECT_EQ(result.provenance.notFinitePixels, 4u);
   EXPECT_EQ(result.provenance.firstNotFinitePixel, (PixelPosition{34, 120}));
   result.accumulatesFrames = true;
-  EXPECT_THAT(resultWarnings(result),
-              ElementsAre(AllOf(HasSubstr("3 pixels"), HasSubstr("'color'"), HasSubstr("frame")),
-                          AllOf(HasSubstr("1 pixel"), HasSubstr("'depth'"), HasSubstr("frame"))));
+  EXPECT_THAT(
+      resultWarnings(result),
+      ElementsAre(
+          AllOf(HasSubstr("3 pixels of"), HasSubstr("'color' were not finite in at least one frame; the first")),
+          AllOf(HasSubstr("1 pixel of"), HasSubstr("'depth' was not finite in at least one frame; it is"))));
   setCounts(result, {}, {});
   EXPECT_THAT(resultWarnings(result), IsEmpty());
 }
