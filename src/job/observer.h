@@ -67,6 +67,9 @@ enum class StopRequest {
   abandon,  // return at once; the result is incomplete and must not be used
 };
 
+// The text of Observer::stage() before the driver compiles shaders. Neither the driver nor the job answers until that is done.
+inline constexpr const char* kCompilingStage = "compiling shaders";
+
 // Calls come from the thread that runs the job, except warning(), which any thread may call.
 class Observer {
  public:

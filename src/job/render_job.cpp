@@ -164,7 +164,7 @@ void RenderJob::prepare(Observer& observer) {
     describeScene(loaded, job_, observer);
     prepareScene(std::move(loaded), observer);
   }
-  observer.stage("compiling shaders");
+  observer.stage(kCompilingStage);
   Compilation compilation = compiling.get();
   link(std::move(compilation.compiled), observer);
   if (request.shutter) {
@@ -393,7 +393,7 @@ void RenderJob::setPrint(std::optional<PrintRequest> print, Observer& observer) 
   printsInAnySize_ = true;
   std::swap(job_.request.print, print);
   if (!team_) return;  // update() failed and is repeated by the next run()
-  observer.stage("compiling shaders");
+  observer.stage(kCompilingStage);
   try {
     team_->finish();
     link(program::compile(job_.program, engine_.compiler(),
@@ -423,7 +423,7 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
     suspendedShutter_ = suspended;
     return;
   }
-  observer.stage("compiling shaders");
+  observer.stage(kCompilingStage);
   program::CompiledProgram compiled = program::compile(
       changed.program, engine_.compiler(), render::renderDefines(scene_->onDevice->defines(), with.outputs));
   std::swap(job_, changed);

@@ -308,7 +308,7 @@ void RenderJob::rebuildScene(Observer& observer) {
 void RenderJob::relink(Observer& observer) {
   const render::SceneFeatures features = render::sceneFeatures(hostScene(), environmentInUse());
   changeScenes([&](render::DeviceScene& device) { device.setFeatures(features); });
-  observer.stage("compiling shaders");
+  observer.stage(kCompilingStage);
   try {
     link(program::compile(job_.program, engine_.compiler(),
                           render::renderDefines(scene_->onDevice->defines(), job_.request.outputs)),

@@ -21,8 +21,9 @@ struct Lesson {
 };
 
 // `overview`: the text of lessons/README.md. In its tables, a cell "[NUMBER · TITLE](PAGE)" is a lesson if the cell above it has
-// an image, "![…](IMAGE)"; the order is that of the text. `text` returns a page by its path below docs/, empty if it does not exist. A lesson whose name is not that of a program uses the
-// program of the first excerpt in its page. Lessons without page or program are left out.
+// an image, "![…](IMAGE)"; the order is that of the text. `text` returns a page by its path below docs/, empty if it does not
+// exist. A lesson whose name is not that of a program uses the program of the first excerpt in its page. Lessons without a page
+// or a program are skipped.
 std::vector<Lesson> courseLessons(std::string_view overview,
                                   const std::function<std::string_view(std::string_view)>& text,
                                   const std::vector<std::string>& builtInPrograms);

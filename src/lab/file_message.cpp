@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/file_message.h"
 
+#include "lab/little_endian.h"
+
 namespace quintet::lab {
 namespace {
 
 constexpr std::string_view kFileMagic = "QFIL";
 constexpr std::uint64_t kFileVersion = 1;
-
-void appendInteger(std::string& bytes, std::uint64_t value, int size) {
-  for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i));
-}
-
-std::uint64_t integerAt(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::uint64_t value = 0;
-  for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "base/error.h"
+#include "lab/little_endian.h"
 
 namespace quintet::lab {
 namespace {
@@ -19,16 +20,14 @@ std::string frameBytes(FrameKind kind, std::string_view data) {
   std::string bytes;
   bytes.reserve(kHeader + data.size());
   bytes += static_cast<char>(kind);
-  for (unsigned i = 0; i < 4; ++i) bytes += static_cast<char>(data.size() >> (8 * i));
+  appendInteger(bytes, data.size(), 4);
   bytes += data;
   return bytes;
 }
 
 std::optional<ChannelFrame> FrameParser::next() {
   if (bytes_.size() - begin_ < kHeader) return {};
-  std::size_t size = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    size |= static_cast<std::size_t>(static_cast<unsigned char>(bytes_[begin_ + 1 + i])) << (8 * i);
+  const std::size_t size = integerAt(bytes_, begin_ + 1, 4);
   const auto kind = static_cast<unsigned char>(bytes_[begin_]);
   if (kind < 1 || kind > 3 || size > kMaxFrameBytes) throw Error("a worker of the lab sent an invalid message");
   if (bytes_.size() - begin_ - kHeader < size) return {};

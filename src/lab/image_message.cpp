@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/image_message.h"
 
+#include "lab/little_endian.h"
+
 namespace quintet::lab {
 namespace {
 
 constexpr std::string_view kMagic = "QIMG";
 constexpr std::uint32_t kVersion = 1;
 
-void append(std::string& bytes, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> (8 * i));
-}
-
 std::uint32_t number(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
+  return static_cast<std::uint32_t>(integerAt(bytes, at, 4));
 }
 
 }  // namespace
@@ -24,7 +20,7 @@ std::string imageMessage(const ImageHeader& header, std::span<const std::byte> f
   bytes.reserve(kImageHeaderBytes + file.size());
   for (const std::uint32_t value :
        {kVersion, header.number, header.size.x, header.size.y, header.factor, header.samples})
-    append(bytes, value);
+    appendInteger(bytes, value, 4);
   bytes += static_cast<char>(header.format);
   bytes += static_cast<char>(header.complete ? 1 : 0);
   bytes.append(2, '\0');

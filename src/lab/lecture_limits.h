@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a program in a folder a lecture file (docs/lecture-form.md) cannot express: reasons for the user why the program
-// is exported as a zip file only.
+// Why a lecture file (docs/lecture-form.md) cannot express a program in a folder: reasons for the user why the program is
+// exported as a zip file only.
 #ifndef QUINTET_LAB_LECTURE_LIMITS_H
 #define QUINTET_LAB_LECTURE_LIMITS_H
 

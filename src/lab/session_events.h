@@ -23,10 +23,11 @@ struct Statistics {
   std::optional<double> error;  // relative, upper bound
 };
 
-// `device`: its name. At most kMaxListedNames names of each kind.
-inline constexpr std::size_t kMaxListedNames = 1000;
 // Programs with a camera of their own ignore navigation.
 bool usesCamera(const program::Program& program);
+
+// `device`: its name. At most kMaxListedNames names of each kind.
+inline constexpr std::size_t kMaxListedNames = 1000;
 std::string openedJson(const job::interactive::Session& session, const std::string& program, const std::string& scene,
                        const std::string& device);
 std::string stateJson(const job::interactive::Session& session, const std::string& program, bool paused);

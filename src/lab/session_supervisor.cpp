@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "job/observer.h"
 #include "lab/page_message.h"
 #include "lab/session_events.h"
 
@@ -66,7 +67,7 @@ SessionSupervisor::Actions SessionSupervisor::pageSent(double now, std::string_v
 void SessionSupervisor::workerSent(double now, std::string_view message) {
   lastAlive_ = now;
   // Events are written by this program: the name comes first.
-  compiling_ = message.starts_with(R"({"event":"stage")") && message.find(kCompilingStage) != message.npos;
+  compiling_ = message.starts_with(R"({"event":"stage")") && message.find(job::kCompilingStage) != message.npos;
   if (message.starts_with(R"({"event":"progress")")) lastPage_ = now;  // the page waits for a video
   if (message.starts_with(R"({"event":"state")")) shown_ = message;
 }

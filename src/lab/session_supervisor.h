@@ -14,9 +14,7 @@ namespace quintet::lab {
 
 inline constexpr double kCrashSeconds = 10;  // a second crash within this time would repeat forever
 inline constexpr double kStuckSeconds = 60;  // beyond the time limit of a launch: loading can take long
-// What a worker reports before it gives shaders to the driver, which has as much time as a launch, but not less than
-// kCompileSeconds: a busy machine compiles slowly.
-inline constexpr std::string_view kCompilingStage = "compiling shaders";
+// After job::kCompilingStage, the driver has as much time as a launch, but at least this much: a busy machine compiles slowly.
 inline constexpr double kCompileSeconds = 10;
 
 // How a worker ended.
@@ -67,7 +65,7 @@ class SessionSupervisor {
   State state_ = State::ended;
   unsigned restarts_ = 0;
   bool stuck_ = false;          // the worker was ended because it did not answer
-  bool compiling_ = false;      // the last message was kCompilingStage
+  bool compiling_ = false;      // the last message was job::kCompilingStage
   double stuckSeconds_ = 0;     // for which it did not answer
   bool keepParameters_ = true;  // for the next worker
   double lastPage_ = 0, lastAlive_ = 0;

@@ -41,7 +41,7 @@ SessionVideo::Motion SessionVideo::motionOf() const {
   }
   if (countsFrames) return Motion::frames;
   if (session_.isAnimated()) return Motion::animation;
-  throw UsageError("nothing moves: neither the program counts frames, nor is the scene animated");
+  throw UsageError("nothing moves: the program does not count frames, and the scene is not animated");
 }
 
 SessionVideo::SessionVideo(interactive::Session& session, const RenderVideo& request, const std::filesystem::path& file)

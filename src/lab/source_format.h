@@ -12,8 +12,9 @@ namespace quintet::lab {
 // clang-format, or clang-format-14, in the folders of $PATH; empty if neither is installed.
 std::filesystem::path findFormatter();
 
-// Throws Error if the formatter fails, does not answer within kFormatSeconds, or would change more than white space.
-inline constexpr double kFormatSeconds = 5;
+inline constexpr double kFormatSeconds = 5;  // that the formatter may take
+
+// Throws Error if the formatter fails, takes longer, or would change more than white space.
 std::string formatSource(const std::filesystem::path& formatter, const std::string& text);
 
 }  // namespace quintet::lab

@@ -392,6 +392,7 @@ class Worker : public job::Observer {
 
   void start(const OpenSession& command) {
     unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(private_.path(), command.files);
+    discardGraphs();
     if (!unsaved_) loadableName(project_, command.program);  // throws
     interactive::SessionRequest request;
     request.program = loadedName(command);
@@ -512,7 +513,7 @@ class Worker : public job::Observer {
     reportStatistics();
     if (graphOutdated_ && progress_.factor == 1 && progress_.samples > 0 && !isMoving()) {
       graphOutdated_ = false;
-      requestGraph(session_->program(), check::sceneFacts(session_->scene()));
+      requestGraph(session_->program(), check::sceneFacts(session_->scene()), kGraphSeconds);
     }
   }
 
@@ -605,10 +606,16 @@ class Worker : public job::Observer {
     if (!graph.empty()) send(withId(graph, id));
   }
 
-  // Compiling all stages again can take seconds, so it happens on a thread, after a pause: a user who types on does not
-  // wait for the graph of an older version.
-  void requestGraph(program::Program program, std::optional<program::SceneFacts> facts) {
-    wantedGraph_ = WantedGraph{std::move(program), std::move(facts), clock_.seconds() + kGraphSeconds};
+  // Compiling all stages again can take seconds, so it happens on a thread, after a pause: a user who continues to type
+  // does not wait for the graph of an older version.
+  void requestGraph(program::Program program, std::optional<program::SceneFacts> facts, double pause) {
+    wantedGraph_ = WantedGraph{std::move(program), std::move(facts), clock_.seconds() + pause};
+    ++graphVersion_;
+  }
+
+  // Those of the program that was open before are not sent.
+  void discardGraphs() {
+    wantedGraph_.reset();
     ++graphVersion_;
   }
 
@@ -633,8 +640,7 @@ class Worker : public job::Observer {
     try {
       std::optional<program::SceneFacts> facts;
       if (session_) facts = check::sceneFacts(session_->scene());
-      requestGraph(program::loadProgram(program), std::move(facts));
-      wantedGraph_->notBefore = 0;
+      requestGraph(program::loadProgram(program), std::move(facts), 0);
     } catch (const Error&) {  // its diagnostics were sent
     }
   }
@@ -685,7 +691,7 @@ class Worker : public job::Observer {
   std::uint64_t restarts_ = 0;
   bool graphOutdated_ = false;
   std::optional<WantedGraph> wantedGraph_;
-  std::atomic<std::uint64_t> graphVersion_ = 0;    // of the last one that was wanted
+  std::atomic<std::uint64_t> graphVersion_ = 0;    // changes when an earlier graph is outdated
   interactive::ImageUpdated progress_, reported_;  // of the last image, and in the last statistics
   bool imagePending_ = false;                      // the last image was not sent
   bool lossyShown_ = false;                        // the last one that was sent is a JPEG

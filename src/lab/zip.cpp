@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "lab/little_endian.h"
 
 namespace quintet::lab {
 namespace {
@@ -20,10 +21,6 @@ constexpr std::uint16_t kStored = 0, kDeflated = 8;
 constexpr std::uint16_t kEncrypted = 1, kUtf8 = 1 << 11;
 constexpr std::uint16_t kVersion = 20, kDate = (1 << 5) | 1;  // 2.0; 1980-01-01
 constexpr const char* kName = "zip file";
-
-void append(std::string& bytes, std::uint32_t value, int size) {
-  for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i));
-}
 
 std::uint32_t crcOf(std::string_view data) {
   return static_cast<std::uint32_t>(
@@ -64,16 +61,16 @@ std::string inflated(std::string_view data, std::size_t size) {
 // Fields of local and central headers from "version needed" to "extra length".
 void appendCommon(std::string& bytes, std::uint16_t method, std::uint32_t crc, std::size_t packed, std::size_t size,
                   std::size_t name) {
-  append(bytes, kVersion, 2);
-  append(bytes, kUtf8, 2);
-  append(bytes, method, 2);
-  append(bytes, 0, 2);  // time
-  append(bytes, kDate, 2);
-  append(bytes, crc, 4);
-  append(bytes, static_cast<std::uint32_t>(packed), 4);
-  append(bytes, static_cast<std::uint32_t>(size), 4);
-  append(bytes, static_cast<std::uint32_t>(name), 2);
-  append(bytes, 0, 2);  // extra
+  appendInteger(bytes, kVersion, 2);
+  appendInteger(bytes, kUtf8, 2);
+  appendInteger(bytes, method, 2);
+  appendInteger(bytes, 0, 2);  // time
+  appendInteger(bytes, kDate, 2);
+  appendInteger(bytes, crc, 4);
+  appendInteger(bytes, static_cast<std::uint32_t>(packed), 4);
+  appendInteger(bytes, static_cast<std::uint32_t>(size), 4);
+  appendInteger(bytes, static_cast<std::uint32_t>(name), 2);
+  appendInteger(bytes, 0, 2);  // extra
 }
 
 class Reader {
@@ -101,10 +98,7 @@ class Reader {
     return bytes_.substr(at, size);
   }
   std::uint32_t number(std::size_t at, std::size_t size) const {
-    const std::string_view bytes = part(at, size);
-    std::uint32_t value = 0;
-    for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-    return value;
+    return static_cast<std::uint32_t>(integerAt(part(at, size), 0, size));
   }
 
   // The record at the end is followed by a comment of at most 65535 bytes.
@@ -156,28 +150,28 @@ std::string zipFiles(const std::map<std::string, std::string>& files) {
     const std::string& data = smaller ? compressed : content;
     const std::uint16_t method = smaller ? kDeflated : kStored;
     const std::size_t offset = archive.size();
-    append(archive, kLocalSignature, 4);
+    appendInteger(archive, kLocalSignature, 4);
     appendCommon(archive, method, crc, data.size(), content.size(), name.size());
     archive += name + data;
-    append(directory, kCentralSignature, 4);
-    append(directory, kVersion, 2);
+    appendInteger(directory, kCentralSignature, 4);
+    appendInteger(directory, kVersion, 2);
     appendCommon(directory, method, crc, data.size(), content.size(), name.size());
-    append(directory, 0, 2);  // comment
-    append(directory, 0, 2);  // disk
-    append(directory, 0, 2);  // internal attributes
-    append(directory, 0, 4);  // external attributes
-    append(directory, static_cast<std::uint32_t>(offset), 4);
+    appendInteger(directory, 0, 2);  // comment
+    appendInteger(directory, 0, 2);  // disk
+    appendInteger(directory, 0, 2);  // internal attributes
+    appendInteger(directory, 0, 4);  // external attributes
+    appendInteger(directory, static_cast<std::uint32_t>(offset), 4);
     directory += name;
   }
   const std::size_t begin = archive.size();
   archive += directory;
-  append(archive, kEndSignature, 4);
-  append(archive, 0, 4);  // disks
-  append(archive, static_cast<std::uint32_t>(files.size()), 2);
-  append(archive, static_cast<std::uint32_t>(files.size()), 2);
-  append(archive, static_cast<std::uint32_t>(directory.size()), 4);
-  append(archive, static_cast<std::uint32_t>(begin), 4);
-  append(archive, 0, 2);  // comment
+  appendInteger(archive, kEndSignature, 4);
+  appendInteger(archive, 0, 4);  // disks
+  appendInteger(archive, static_cast<std::uint32_t>(files.size()), 2);
+  appendInteger(archive, static_cast<std::uint32_t>(files.size()), 2);
+  appendInteger(archive, static_cast<std::uint32_t>(directory.size()), 4);
+  appendInteger(archive, static_cast<std::uint32_t>(begin), 4);
+  appendInteger(archive, 0, 2);  // comment
   return archive;
 }
 

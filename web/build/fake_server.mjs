@@ -49,10 +49,10 @@ const rows = readFileSync(path.join(root, "docs/lessons/README.md"), "utf8").spl
 const course = rows.flatMap((cells, row) => cells.flatMap((cell, column) => {
   const lesson = kLesson.exec(cell);
   const image = lesson && kImage.exec(rows[row - 1]?.[column] ?? "");
-  return image ? [["", image[1], ...lesson.slice(1)]] : [];
+  return image ? [[image[1], ...lesson.slice(1)]] : [];
 }));
 const lessons = () =>
-  course.map(([, image, number, title, name]) => ({
+  course.map(([image, number, title, name]) => ({
     name,
     number,
     title,

@@ -9,7 +9,7 @@ import { formatDocument } from "./source_format";
 import { split } from "./splitter";
 import { stored } from "./stored";
 import { type Tab, TabList } from "./tabs";
-import type { EditorDocument, Workspace } from "./workspace";
+import { type EditorDocument, isGlsl, type Workspace } from "./workspace";
 
 class Pane {
   readonly body = h("div", { class: "editor-body" });
@@ -61,7 +61,7 @@ export class EditorArea {
       "div",
       { class: "actions" },
       button("find", "Find", "Find and replace (Ctrl+F)", () => this.withEditor((view) => openSearchPanel(view))),
-      button("format", "Format", "Format the code (Shift+Alt+F)", () => this.withEditor((view, document) => void formatDocument(view, document.kind !== "toml" && document.kind !== "text"))),
+      button("format", "Format", "Format the code (Shift+Alt+F)", () => this.withEditor((view, document) => void formatDocument(view, isGlsl(document.kind)))),
       this.splitButton,
     );
     this.panes = [new Pane("Editor", (id) => this.select(0, id), actions), new Pane("Second editor", (id) => this.select(1, id), h("span"))];
@@ -141,7 +141,7 @@ export class EditorArea {
   }
 
   private isCode(document: EditorDocument): boolean {
-    return document.kind !== "toml" && document.kind !== "text" && document.kind !== "common";
+    return isGlsl(document.kind) && document.kind !== "common";
   }
 
   private preferred(documents: readonly EditorDocument[]): EditorDocument | undefined {

@@ -5,7 +5,7 @@ import { h } from "./dom";
 import type { Project } from "./protocol";
 
 const kKeys: readonly [string, readonly [string, string][]][] = [
-  ["Page", [["Ctrl+O", "Open a program"], ["Ctrl+S", "Save now; edits are saved by themselves after a moment"], ["F6, Shift+F6", "Next or previous area"], ["F1", "This help"]]],
+  ["Page", [["Ctrl+O", "Open a program"], ["Ctrl+S", "Save now; edits are saved automatically after a moment"], ["F6, Shift+F6", "Next or previous area"], ["F1", "This help"]]],
   [
     "Editor",
     [

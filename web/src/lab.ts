@@ -33,6 +33,7 @@ import { askForFolder, askForVersion } from "./workspace_dialogs";
 
 const kPollInterval = 2000; // ms between looks at files that other programs may have changed
 const kRetryInterval = 1500; // ms between attempts to reach the server at the start
+const kSideTabs = [{ id: "parameters", title: "Parameters" }, { id: "view", title: "View" }, { id: "pixel", title: "Pixel" }];
 
 export class Lab {
   private project: Project | undefined;
@@ -135,8 +136,7 @@ export class Lab {
 
     this.dock = new TabList("Problems and pipeline", this.dockBody, () => this.showDock());
     this.side = new TabList("Parameters, view and pixel", this.sideBody, () => this.showSide());
-    this.dock.show([{ id: "problems", title: "Problems" }, { id: "pipeline", title: "Pipeline" }], "problems");
-    this.side.show([{ id: "parameters", title: "Parameters" }, { id: "view", title: "View" }, { id: "pixel", title: "Pixel" }], "parameters");
+    this.side.show(kSideTabs, "parameters");
     this.outer = this.createLayout();
     this.outer.setHidden(true, false);
     replace(document.body, this.header(), h("main", {}, this.outer.element));
@@ -226,7 +226,7 @@ export class Lab {
       open: (file, line, column) => void this.sources.open(file, line, column),
       explain: (id) => void this.sources.explain(id),
       inDiagram: (diagnostic) => {
-        this.selectDock("pipeline");
+        this.showDock("pipeline");
         const index = this.pipeline.diagnostics.findIndex((other) => other.id === diagnostic.id && other.file === diagnostic.file && other.line === diagnostic.line);
         this.pipeline.select(index < 0 ? undefined : index);
       },
@@ -534,7 +534,7 @@ export class Lab {
 
   private showSaveState(): void {
     const status = this.workspace.status;
-    const texts = { saved: this.workspace.program?.builtIn ? "Built-in: the first edit makes a copy" : "Saved", changed: "Edited", saving: "Saving…", conflict: "Changed on disk, too", failed: "Not saved" };
+    const texts = { saved: this.workspace.program?.builtIn ? "Built-in: the first edit makes a copy" : "Saved", changed: "Edited", saving: "Saving…", conflict: "Also changed on disk", failed: "Not saved" };
     this.saveState.textContent = this.workspace.program ? texts[status] : "";
     this.saveState.className = `save-state ${status}`;
     const failed = this.workspace.files.find((file) => file.status === status && file.message);
@@ -542,18 +542,13 @@ export class Lab {
     this.editors?.refresh();
   }
 
-  private showDock(): void {
+  private showDock(selected = this.dock.selected || "problems"): void {
     const errors = this.diagnostics.filter((diagnostic) => diagnostic.severity === "error").length;
     const shown = this.diagnostics.length;
     const mark = errors > 0 ? ("error" as const) : this.diagnostics.some((diagnostic) => diagnostic.severity === "warning") ? ("warning" as const) : undefined;
-    this.dock.show([{ id: "problems", title: "Problems", ...(shown > 0 && { badge: String(shown) }), ...(mark && { mark }) }, { id: "pipeline", title: "Pipeline" }], this.dock.selected || "problems");
-    const content = this.dock.selected === "pipeline" ? this.pipeline.element : this.problems.element;
+    this.dock.show([{ id: "problems", title: "Problems", ...(shown > 0 && { badge: String(shown) }), ...(mark && { mark }) }, { id: "pipeline", title: "Pipeline" }], selected);
+    const content = selected === "pipeline" ? this.pipeline.element : this.problems.element;
     if (this.dockBody.firstChild !== content) this.dockBody.replaceChildren(content);
-  }
-
-  private selectDock(id: string): void {
-    this.dock.show([{ id: "problems", title: "Problems" }, { id: "pipeline", title: "Pipeline" }], id);
-    this.showDock();
   }
 
   private showSide(): void {
@@ -563,7 +558,7 @@ export class Lab {
 
   private selectSide(id: string): void {
     if (this.side.selected === id) return;
-    this.side.show([{ id: "parameters", title: "Parameters" }, { id: "view", title: "View" }, { id: "pixel", title: "Pixel" }], id);
+    this.side.show(kSideTabs, id);
     this.showSide();
   }
 

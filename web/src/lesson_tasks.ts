@@ -322,7 +322,7 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
     },
     {
       id: "sky-only",
-      text: "A random direction is blocked or sees the sky. Show the share that sees the sky: the image is the mean of 1 (sky) and 0 (blocked), without albedo and cosine. The check compares the mean of 16 frames.",
+      text: "A ray in a random direction is blocked or reaches the sky. Show the share of rays that reach the sky: the image is the mean of 1 (sky) and 0 (blocked), without albedo and cosine. The check compares the mean of 16 frames.",
       hint: "`estimate` returns one sample. It is 1 or 0 now, so there is nothing to divide by.",
       edits: [
         {
@@ -355,7 +355,7 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
   "25_next_event": [
     {
       id: "upwards",
-      text: "Let the lamp shine upwards, too: a point above it receives light from its other side. The check compares the mean of 16 frames at the ceiling and at the floor.",
+      text: "Let the lamp also shine upward: a point above it receives light from its other side. The check compares the mean of 16 frames at the ceiling and at the floor.",
       hint: "`cosLamp` in `byPoint` is the cosine at the lamp. Its absolute value counts both sides.",
       edits: [{ from: "float cosLamp = wi.y;", to: "float cosLamp = abs(wi.y);" }],
       samples: 16,
@@ -365,7 +365,7 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
   "26_mis": [
     {
       id: "power-heuristic",
-      text: "Use the power heuristic: the weight is the square of the own density, divided by the sum of both squares. It prefers the better technique more than the balance heuristic does.",
+      text: "Use the power heuristic: the weight is the square of the technique's own density, divided by the sum of both squares. It favors the better technique more strongly than the balance heuristic.",
       hint: "`weightOf` computes the weight. The check compares the noise of one frame, so keep the random numbers as they are.",
       edits: [{ from: "strategy == 2 ? own / (own + other) : 1.0;", to: "strategy == 2 ? own * own / (own * own + other * other) : 1.0;" }],
     },
@@ -373,7 +373,7 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
   "27_roulette": [
     {
       id: "first-event",
-      text: "Gamble from the first scattering event on, instead of the third. The check compares the mean number of events of a path (`show` 1) in 16 frames.",
+      text: "Use Russian roulette from the first scattering event on, instead of from the third. The check compares the mean number of events of a path (`show` 1) in 16 frames.",
       hint: "The condition before `survival` contains the depth.",
       edits: [{ from: "if (roulette && depth >= 2) {", to: "if (roulette) {" }],
       samples: 16,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The explanation of a sample (docs/explain-pixel.md) as a tree of rows: rays, the shaders that they run, and the values of
 // payloads before and after.
+import { capitalized } from "./text";
 
 export type Value = number | string | boolean | null | Value[] | { [name: string]: Value };
 
@@ -96,7 +97,7 @@ function titleOf(event: ExplanationEvent, ray: number): string {
     case "end":
       return `End: ${text("reason")}`;
     default:
-      return event.type.charAt(0).toUpperCase() + event.type.slice(1);
+      return capitalized(event.type);
   }
 }
 

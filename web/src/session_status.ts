@@ -5,8 +5,7 @@ import { countText, type Diagnostic } from "./diagnostic";
 import { h, replace } from "./dom";
 import type { ImageView } from "./image_view";
 import type { Session } from "./session";
-
-const capitalized = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+import { capitalized } from "./text";
 
 function message(title: string, text: string, ...actions: Node[]): HTMLElement {
   return h("div", { class: "message" }, h("b", {}, title), text && h("span", {}, text), actions.length > 0 && h("div", { class: "message-actions" }, actions));
@@ -53,7 +52,7 @@ export class SessionStatus {
     const connect = () => button("Connect now", () => session.connect());
     const errors = diagnostics.filter((diagnostic) => diagnostic.severity === "error");
     if (connection === "refused" || connection === "full") return { content: message("No connection", session.connectionMessage, connect()), dim: true };
-    if (connection === "lost") return { content: message("The server does not answer", "The page connects again as soon as it runs. Edits stay here until they can be saved.", connect()), dim: true };
+    if (connection === "lost") return { content: message("The server does not answer", "The page reconnects as soon as the server runs again. Edits stay here until they can be saved.", connect()), dim: true };
     if (worker?.state === "crashed" || worker?.state === "hung" || worker?.state === "waiting") {
       const cause = session.cause;
       const title = cause?.state === "hung" ? "The shader takes too long" : cause ? "The render process crashed" : "The render process has stopped";

@@ -21,7 +21,7 @@ export async function formatDocument(view: EditorView, isGlsl: boolean): Promise
     // The editor shows no blank lines at its end.
     const change = minimalChange(text, formatted.replace(/\n+$/, ""));
     if (change) view.dispatch({ changes: change, userEvent: "format" });
-    notify(change ? `Formatted by ${formatter}` : `Formatted already, says ${formatter}`);
+    notify(change ? `Formatted by ${formatter}` : `Already formatted (${formatter})`);
   } catch (error) {
     if (view.state.doc !== document) return;
     indentDocument(view);

@@ -2,6 +2,7 @@
 // Compares values of a program with those of a solution, for the checks of lesson tasks: means of pixels, the payload of a
 // ray, and what a pixel prints. A difference is a sentence for the user.
 import { type Explanation, type ExplanationEvent, formatValue } from "./ray_tree";
+import { capitalized } from "./text";
 
 // Pixels of the image, x right, y down.
 export interface Block {
@@ -52,7 +53,7 @@ export function compareMeans(blocks: readonly Block[], tolerance: number, yours:
   for (const [i, block] of blocks.entries())
     if (!valuesMatch(yours[i]!.slice(0, 3), wanted[i]!.slice(0, 3), tolerance))
       return { passed: false, message: `The mean of the pixels ${blockText(block)} is ${color(yours[i]!)} (linear), that of the solution is ${color(wanted[i]!)}.` };
-  return { passed: true, message: `Done: the mean of the pixels ${blockText(blocks[0]!)} is ${color(yours[0]!)}, as that of the solution.` };
+  return { passed: true, message: `Done: the mean of the pixels ${blockText(blocks[0]!)} is ${color(yours[0]!)}, like that of the solution.` };
 }
 
 function firstRay(events: readonly ExplanationEvent[]): ExplanationEvent | undefined {
@@ -74,10 +75,10 @@ export function payloadAfter(explanation: Explanation, member: string): unknown 
 export function comparePayloads(pixel: readonly [number, number], member: string, yours: Explanation, wanted: Explanation): ValueResult {
   const own = payloadAfter(yours, member);
   const expected = payloadAfter(wanted, member);
-  const place = `After the first ray of pixel ${pixel[0]}, ${pixel[1]}, payload.${member} is`;
+  const place = `after the first ray of pixel ${pixel[0]}, ${pixel[1]}, payload.${member} is`;
   if (own === undefined) return { passed: false, message: `Pixel ${pixel[0]}, ${pixel[1]} has no ray that returns payload.${member}; the solution has ${formatValue(expected)}.` };
-  if (!valuesMatch(own, expected)) return { passed: false, message: `${place} ${formatValue(own)}; the solution has ${formatValue(expected)}.` };
-  return { passed: true, message: `Done: ${place.charAt(0).toLowerCase()}${place.slice(1)} ${formatValue(own)}.` };
+  if (!valuesMatch(own, expected)) return { passed: false, message: `${capitalized(place)} ${formatValue(own)}; the solution has ${formatValue(expected)}.` };
+  return { passed: true, message: `Done: ${place} ${formatValue(own)}.` };
 }
 
 export function comparePrints(pixel: readonly [number, number], yours: readonly string[], wanted: readonly string[]): ValueResult {

@@ -25,6 +25,7 @@ export function defaultFrames(state: SessionState, opened: Opened): number {
 
 class VideoRender {
   private readonly link: Connection;
+  private resolveStart: (() => void) | undefined;
   private rejectStart: ((error: Error) => void) | undefined;
 
   constructor(onProgress: (done: number, total: number) => void) {
@@ -39,7 +40,6 @@ class VideoRender {
       onImage: (image) => this.link.send({ do: "received", image: image.number }),
     });
   }
-  private resolveStart: (() => void) | undefined;
 
   async run(open: OpenRequest, video: VideoRequest): Promise<{ name: string; content: Blob }> {
     await new Promise<void>((resolve, reject) => {
@@ -67,7 +67,7 @@ export function exportVideo(open: OpenRequest, state: SessionState, opened: Open
     const fps = number("Frames per second", 24, 1, 240, "any");
     const format = h("select", { "aria-label": "Format" }, [["mp4", "MP4 (H.264)"], ["webm", "WebM (VP9)"], ["gif", "GIF"]].map(([value, label]) => h("option", { value }, label)));
     const size = h("p", { class: "note" }, `${state.width} × ${state.height} pixels${state.frames ? "" : `, ${state.samples} samples per pixel`}: change them under View.`);
-    const progress = h("progress", { max: 1, value: 0, "aria-label": "Frames that are rendered", hidden: true });
+    const progress = h("progress", { max: 1, value: 0, "aria-label": "Rendered frames", hidden: true });
     const message = h("p", { class: "video-message", role: "status" });
     const start = h("button", { type: "submit", class: "primary" }, "Render");
     const close = h("button", { type: "button", onclick: () => element.close() }, "Close");

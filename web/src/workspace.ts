@@ -44,6 +44,10 @@ export interface EditorDocument {
   marks: Diagnostic["severity"] | undefined; // the worst problem in it
 }
 
+export function isGlsl(kind: EditorDocument["kind"]): kind is Segment["kind"] {
+  return kind !== "toml" && kind !== "text";
+}
+
 export type FileStatus = "saved" | "changed" | "saving" | "conflict" | "failed";
 
 export interface SourceFile {
@@ -246,7 +250,7 @@ export class Workspace {
       numbers: new Compartment(),
       marks: undefined,
     };
-    const language: SourceLanguage = kind === "toml" ? "toml" : kind === "text" ? "text" : "glsl";
+    const language: SourceLanguage = isGlsl(kind) ? "glsl" : kind;
     document.state = EditorState.create({
       doc: body,
       extensions: [

@@ -3,6 +3,7 @@
 import { ask } from "./dialog";
 import { h } from "./dom";
 import { validFolder } from "./program_chooser";
+import { capitalized } from "./text";
 import type { SourceFile } from "./workspace";
 
 // The editor and the disk have changed the same lines.
@@ -10,7 +11,7 @@ export function askForVersion(file: SourceFile, disk: string): Promise<"mine" | 
   return ask<"mine" | "disk">(
     `${file.path} was changed on disk`,
     [
-      h("p", {}, "The same lines were changed here and by another program. Which version counts?"),
+      h("p", {}, "The same lines were changed here and by another program. Which version do you want to keep?"),
       h("details", {}, h("summary", {}, "Version on disk"), h("pre", { class: "conflict", tabindex: 0 }, disk)),
     ],
     [
@@ -25,7 +26,7 @@ export async function askForFolder(proposal: string, message: string): Promise<s
   const input = h("input", { type: "text", value: proposal, "aria-label": "Folder" });
   const answer = await ask(
     "Copy the built-in program",
-    [h("p", {}, `${message.charAt(0).toUpperCase()}${message.slice(1)}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
+    [h("p", {}, `${capitalized(message)}. Choose a different folder for your copy.`), h("label", {}, "Folder ", input)],
     [
       { label: "Cancel", value: false },
       { label: "Copy", value: true, primary: true },
