@@ -38,11 +38,11 @@ PartCheck problem(PartState state, const std::filesystem::path& file, const std:
   return {state, file.string() + ": " + text};
 }
 
-PartCheck foreignPlan(const Plan& plan, const std::filesystem::path& file, const std::string& id) {
+PartCheck foreignPlan(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
   return problem(PartState::foreign, file,
-                 id.empty() ? "belongs to no plan"
-                            : fmt::format("belongs to the plan {}, expected {}", id.substr(0, kShownIdDigits),
-                                          planId(plan).substr(0, kShownIdDigits)));
+                 found.empty() ? "belongs to no plan"
+                               : fmt::format("belongs to the plan {}, expected {}", found.substr(0, kShownIdDigits),
+                                             expected.substr(0, kShownIdDigits)));
 }
 
 PartCheck wrongVersion(const Plan& plan, const std::filesystem::path& file, const std::string& version) {
@@ -69,7 +69,7 @@ PartCheck checkFilm(const Plan& plan, const std::string& id, std::size_t part, C
     const render::FilmFile& film = reader.header();
     const job::Provenance p = job::provenanceOf(film, file);
     if (p.version != plan.version || p.libraryHash != plan.libraryHash) return wrongVersion(plan, file, p.version);
-    if (p.farmPlan != id) return foreignPlan(plan, file, p.farmPlan);
+    if (p.farmPlan != id) return foreignPlan(file, p.farmPlan, id);
     const std::vector<render::SampleRange>& ranges = film.film.counts.ranges;
     const render::SampleRange expected = samplesOf(plan, part);
     if (ranges != std::vector{expected}) {
@@ -88,17 +88,18 @@ PartCheck checkFilm(const Plan& plan, const std::string& id, std::size_t part, C
   return {PartState::done, ""};
 }
 
-// Returns the problem with an image of the list; empty if there is none.
-std::string imageProblem(const std::filesystem::path& image, const FrameJson& entry, CheckDepth depth) {
+// Checks an image of the list.
+PartCheck checkImage(const std::filesystem::path& image, const FrameJson& entry, CheckDepth depth) {
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(image, failed);
-  if (failed) return "is missing";
-  if (bytes != entry.at("bytes").get<std::uint64_t>())
-    return fmt::format("has {}, expected {}", counted(bytes, "byte"), entry.at("bytes").get<std::uint64_t>());
+  if (failed) return problem(PartState::incomplete, image, "is missing");
+  const auto expected = entry.at("bytes").get<std::uint64_t>();
+  if (bytes != expected)
+    return problem(PartState::damaged, image, fmt::format("has {}, expected {}", counted(bytes, "byte"), expected));
   if (depth == CheckDepth::content &&
       Hasher().add(readFile(image)).finish().hex() != entry.at("hash").get<std::string>())
-    return "its content changed since it was written";
-  return "";
+    return problem(PartState::damaged, image, "its content changed since it was written");
+  return {PartState::done, ""};
 }
 
 PartCheck checkFrames(const Plan& plan, const std::string& id, std::size_t part, CheckDepth depth) {
@@ -107,14 +108,13 @@ PartCheck checkFrames(const Plan& plan, const std::string& id, std::size_t part,
     const FrameJson json = FrameJson::parse(readTextFile(file));
     if (json.at("version") != plan.version || json.at("shaderLibrary") != plan.libraryHash)
       return wrongVersion(plan, file, json.at("version").get<std::string>());
-    if (json.at("plan") != id) return foreignPlan(plan, file, json.at("plan").get<std::string>());
+    if (json.at("plan") != id) return foreignPlan(file, json.at("plan").get<std::string>(), id);
     if (json.at("part") != part)
       return problem(PartState::foreign, file, fmt::format("it is a copy of part {}", json.at("part").dump()));
     std::set<std::uint64_t> frames;
     for (const FrameJson& entry : json.at("files")) {
       const std::filesystem::path image = plan.folder / entry.at("file").get<std::string>();
-      if (const std::string text = imageProblem(image, entry, depth); !text.empty())
-        return problem(text == "is missing" ? PartState::incomplete : PartState::damaged, image, text);
+      if (PartCheck check = checkImage(image, entry, depth); check.state != PartState::done) return check;
       frames.insert(entry.at("frame").get<std::uint64_t>());
     }
     for (std::uint64_t frame = plan.parts[part].first; frame <= plan.parts[part].last; ++frame)

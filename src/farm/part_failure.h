@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why the last attempt at a part failed: a small file beside the part, so that the status and the merge can tell the cause
+// Why the last attempt at a part failed: a small file beside the part, so that the status and the merge can report the cause
 // without the logs of the machine. A finished part removes it.
 #ifndef QUINTET_FARM_PART_FAILURE_H
 #define QUINTET_FARM_PART_FAILURE_H

@@ -13,7 +13,7 @@
 namespace quintet::farm {
 
 // Verifies all parts, and merges them block by block (job::merge) while their checksums are verified. `partial`: without
-// the parts that are missing or incomplete. Throws Error that names every unusable part. `commandLine`, `maxMemory`: as of
+// the parts that are missing or incomplete. Throws Error that names the unusable parts. `commandLine`, `maxMemory`: as of
 // job::merge(). For plans of an image.
 job::RenderResult mergeParts(const Plan& plan, bool partial, job::Observer& observer, const std::string& commandLine,
                              std::size_t maxMemory);

@@ -24,8 +24,6 @@ constexpr const char* kFormat = "quintet farm plan";
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kPartsPerFolder = 1000;
 
-const char* kindName(PartKind kind) { return kind == PartKind::frames ? "frames" : "batches"; }
-
 // Everything but the id.
 PlanJson contentJson(const Plan& plan) {
   PlanJson parts = PlanJson::array();
@@ -40,7 +38,7 @@ PlanJson contentJson(const Plan& plan) {
           {"workingFolder", plan.workingFolder.string()},
           {"image", plan.image.string()},
           {"samples", plan.samples},
-          {"kind", kindName(plan.kind)},
+          {"kind", partKindName(plan.kind)},
           {"parts", std::move(parts)}};
 }
 
@@ -83,6 +81,8 @@ std::filesystem::path fileOfPart(const Plan& plan, std::size_t part, const char*
 }
 
 }  // namespace
+
+const char* partKindName(PartKind kind) { return kind == PartKind::frames ? "frames" : "batches"; }
 
 std::vector<Part> splitWork(std::uint64_t first, std::uint64_t last, std::uint64_t count, std::string_view noun,
                             std::string_view plural) {
@@ -164,9 +164,9 @@ void requireSameContent(const Plan& plan, const std::string& sceneHash, const st
 
 std::string partName(const Plan& plan, std::size_t part) {
   const Part& p = plan.parts.at(part);
-  const bool frames = plan.kind == PartKind::frames;
-  if (p.first == p.last) return fmt::format("part {} ({} {})", part, frames ? "frame" : "batch", p.first);
-  return fmt::format("part {} ({} {}–{})", part, frames ? "frames" : "batches", p.first, p.last);
+  if (p.first == p.last)
+    return fmt::format("part {} ({} {})", part, plan.kind == PartKind::frames ? "frame" : "batch", p.first);
+  return fmt::format("part {} ({} {}–{})", part, partKindName(plan.kind), p.first, p.last);
 }
 
 render::SampleRange samplesOf(const Plan& plan, std::size_t part) {

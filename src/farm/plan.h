@@ -34,6 +34,7 @@ struct Part {
 };
 
 enum class PartKind { batches, frames };
+const char* partKindName(PartKind kind);  // "batches", "frames"
 
 struct Plan {
   // Together they make the id.

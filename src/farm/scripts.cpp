@@ -2,6 +2,7 @@
 #include "farm/scripts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <span>
 #include <string_view>
@@ -29,7 +30,8 @@ using Placeholders = std::map<std::string, std::vector<std::string>>;
 std::string scriptTemplate(std::string_view name) {
   const auto files = embeddedFarmScripts();
   const auto found = std::ranges::find(files, name, &EmbeddedFile::path);
-  return found == files.end() ? "" : std::string(found->data);
+  assert(found != files.end());
+  return std::string(found->data);
 }
 
 // The line with values for its placeholders "@NAME@", one line for each value of the last one.

@@ -17,7 +17,8 @@ namespace quintet::farm {
 
 // Slurm's default MaxArraySize is 1001, so that 1000 is the largest index.
 inline constexpr std::size_t kDefaultTasks = 1000;
-inline constexpr const char* kJobsFile = "slurm_jobs";  // in the folder of the plan: ids of the submitted jobs
+inline constexpr const char* kJobsFile =
+    "slurm_jobs";  // in the folder of the plan: ids of the submitted jobs, number of tasks
 
 struct ScriptOptions {
   std::filesystem::path program;        // quintet, on all machines

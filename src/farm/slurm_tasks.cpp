@@ -38,7 +38,7 @@ CommandOutput outputOf(const std::string& command) {
   return output;
 }
 
-bool isJobId(std::string_view text) {
+bool isNumber(std::string_view text) {
   return !text.empty() && text.size() < 20 && text.find_first_not_of("0123456789") == text.npos;
 }
 
@@ -69,8 +69,11 @@ SlurmTasks querySlurm(const Plan& plan) {
   std::string merge;
   for (const std::string& line : splitText(readTextFile(file), '\n')) {
     const std::vector<std::string> words = splitText(line, ' ');
-    if (words.size() != 2 || !isJobId(words[1])) continue;
-    (words[0] == "merge" ? merge : tasks.job) = words[1];
+    if (words.size() != 2 || !isNumber(words[1])) continue;
+    if (words[0] == "tasks")
+      tasks.arraySize = parseNumber<std::size_t>(words[1]).value_or(0);
+    else
+      (words[0] == "merge" ? merge : tasks.job) = words[1];
   }
   if (tasks.job.empty()) return tasks;
   if (output::findProgram("squeue").empty()) {

@@ -19,7 +19,8 @@ struct SlurmTask {
 };
 
 struct SlurmTasks {
-  std::string job;                         // id of the array; empty if the plan was not submitted
+  std::string job;            // id of the array; empty if the plan was not submitted
+  std::size_t arraySize = 0;  // number of its tasks as submitted; 0 if unknown. Slurm forgets tasks that ended
   std::map<std::size_t, SlurmTask> tasks;  // by their index in the array
   std::optional<SlurmTask> merge;
   std::string problem;  // why nothing is known: squeue is missing or failed; empty if it answered

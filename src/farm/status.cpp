@@ -27,6 +27,8 @@ std::string describe(const SlurmTask& task) {
   return task.nodes.empty() ? task.state : fmt::format("{} on {}", task.state, task.nodes);
 }
 
+StatusJson taskJson(const SlurmTask& task) { return {{"state", task.state}, {"nodes", task.nodes}}; }
+
 }  // namespace
 
 std::array<std::size_t, kPartStates> Status::counts() const {
@@ -39,6 +41,7 @@ bool Status::complete() const { return counts()[0] == parts.size() && unexpected
 
 Status readStatus(const Plan& plan, CheckDepth depth) {
   Status status{plan, checkParts(plan, depth), unexpectedFiles(plan), querySlurm(plan), 0};
+  status.tasks = status.slurm.arraySize;
   for (const auto& [index, task] : status.slurm.tasks) status.tasks = std::max(status.tasks, index + 1);
   return status;
 }
@@ -83,20 +86,18 @@ std::string statusJson(const Status& status) {
                      {"last", status.plan.parts[part].last},
                      {"state", partStateName(check.state)},
                      {"problem", check.problem}};
-    if (const SlurmTask* task = taskOf(status, part)) entry["slurm"] = {{"state", task->state}, {"nodes", task->nodes}};
+    if (const SlurmTask* task = taskOf(status, part)) entry["slurm"] = taskJson(*task);
     parts.push_back(std::move(entry));
   }
   for (const std::filesystem::path& file : status.unexpected) unexpected.push_back(file.string());
-  StatusJson json{
-      {"plan", planId(status.plan)},         {"version", status.plan.version},
-      {"image", status.plan.image.string()}, {"kind", status.plan.kind == PartKind::frames ? "frames" : "batches"},
-      {"parts", status.parts.size()},        {"complete", status.complete()},
-      {"states", std::move(states)},         {"notDone", std::move(parts)},
-      {"unexpected", std::move(unexpected)}};
+  StatusJson json{{"plan", planId(status.plan)},         {"version", status.plan.version},
+                  {"image", status.plan.image.string()}, {"kind", partKindName(status.plan.kind)},
+                  {"parts", status.parts.size()},        {"complete", status.complete()},
+                  {"states", std::move(states)},         {"notDone", std::move(parts)},
+                  {"unexpected", std::move(unexpected)}};
   if (!status.slurm.job.empty()) {
     StatusJson slurm{{"job", status.slurm.job}, {"problem", status.slurm.problem}};
-    if (status.slurm.merge)
-      slurm["merge"] = {{"state", status.slurm.merge->state}, {"nodes", status.slurm.merge->nodes}};
+    if (status.slurm.merge) slurm["merge"] = taskJson(*status.slurm.merge);
     json["slurm"] = std::move(slurm);
   }
   return output::jsonLine(json);

@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/live_module_check.h"
 
+#include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace quintet::job {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Adds a folder and its subfolders, except for hidden ones and symbolic links: checkModuleFiles() does not search those.
+void addWatchedFolders(const fs::path& folder, std::vector<fs::path>& folders) {
+  folders.push_back(folder);
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    const bool hidden = entry.path().filename().string().starts_with('.');
+    if (!hidden && entry.is_directory(failed) && !entry.is_symlink(failed)) addWatchedFolders(entry.path(), folders);
+  }
+}
+
+}  // namespace
 
 LiveModuleCheck::LiveModuleCheck(ModuleCheckRequest request) : request_(std::move(request)) {
   watcher_.watch(requested());
@@ -26,14 +42,10 @@ WatchList LiveModuleCheck::requested() const {
   if (!request_.groups.empty()) list.addFile(request_.groups);
   for (const fs::path name : request_.modules) {
     std::error_code failed;
-    if (!fs::is_directory(name, failed)) {
+    if (fs::is_directory(name, failed))
+      addWatchedFolders(name, list.folders);
+    else
       list.addFile(name);
-      continue;
-    }
-    list.folders.push_back(name);
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(name, failed))
-      if (entry.is_directory(failed) && !entry.path().filename().string().starts_with('.'))
-        list.folders.push_back(entry.path());
   }
   return list;
 }

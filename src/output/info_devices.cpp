@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "gpu/context.h"
+#include "job/version.h"
 #include "output/info.h"
 #include "output/json_line.h"
 
@@ -86,7 +87,7 @@ std::string devicesInfo(bool json) {
   if (json) {
     Json all = Json::array();
     for (const gpu::DeviceInfo& device : devices) all.push_back(toJson(device));
-    const Json result{{"version", QUINTET_VERSION}, {"devices", std::move(all)}};
+    const Json result{{"version", job::quintetVersion()}, {"devices", std::move(all)}};
     return jsonLine(result);
   }
   if (devices.empty()) return "no Vulkan device found: install a GPU driver or Mesa's lavapipe (docs/install.md)\n";

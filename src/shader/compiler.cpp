@@ -229,7 +229,7 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
     Diagnostic note{.severity = Severity::note, .file = from.name, .line = 0, .column = 0, .id = "GLSL", .text = {}};
     note.text = "searched for '" + std::string(include.name) + "' in " +
                 joined(files_.searchedFolders(from, missedQuoted_ == include.name), ", ");
-    if (shader::IncludeRoots::fromEnvironment().limited()) note.text += "; files outside of the project are not read";
+    if (files_.limited()) note.text += "; files outside of the project are not read";
     run_.diagnostics.push_back(std::move(note));
   }
 

@@ -96,7 +96,7 @@ const SourceFile* IncludeResolver::onDisk(const fs::path& path, const std::strin
   }
 }
 
-// A file that the program names itself.
+// Returns a file that the program names itself; null if it does not exist or is outside of the include roots.
 const SourceFile* IncludeResolver::ofProgram(const fs::path& path, const std::string& libraryPath) {
   return roots_.allows(path) ? onDisk(path, libraryPath) : nullptr;
 }

@@ -53,6 +53,7 @@ class IncludeResolver {
   std::string_view textOf(std::string_view name) const;
   // The root and all files found so far.
   std::vector<const SourceFile*> files() const;
+  bool limited() const { return roots_.limited(); }  // to the IncludeRoots of the environment
   // The folders that resolve() searches, in order, for an error message.
   std::vector<std::string> searchedFolders(const SourceFile& from, bool quoted) const;
 

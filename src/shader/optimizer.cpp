@@ -55,10 +55,10 @@ void registerInlining(spvtools::Optimizer& optimizer) {
 
 enum class Passes { all, inlining, reductions };
 
-// `untrusted`: validates after each pass. Some passes of SPIRV-Tools 2023.1 make valid modules invalid, with which later passes
-// crash (VectorDCE).
-std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo, bool untrusted,
-                               const std::optional<SpecializationValues>& values, Passes passes = Passes::all) {
+// Runs the passes that `registerPasses(optimizer)` adds. Throws Error if one fails.
+template <class Register>
+std::vector<std::uint32_t> runPasses(const std::vector<std::uint32_t>& words, const spvtools::OptimizerOptions& options,
+                                     const Register& registerPasses) {
   std::vector<std::uint32_t> result;
   std::string message;
   bool succeeded = false;
@@ -67,19 +67,30 @@ std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool deb
     optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
       if (level <= SPV_MSG_ERROR) message = text;
     });
-    optimizer.SetValidateAfterAll(untrusted);
-    if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
-    if (values) registerSpecialization(optimizer, *values);
-    if (passes == Passes::inlining) registerInlining(optimizer);
-    if (passes != Passes::inlining) registerReductions(optimizer);
-    if (passes == Passes::all) optimizer.RegisterPerformancePasses();
-    spvtools::OptimizerOptions options;
-    options.set_run_validator(passes != Passes::reductions);
-    options.set_validator_options(validatorOptions());
+    registerPasses(optimizer);
     succeeded = optimizer.Run(words.data(), words.size(), &result, options);
   });
   if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));
   return result;
+}
+
+// `untrusted`: validates after each pass. Some passes of SPIRV-Tools 2023.1 make valid modules invalid, with which later passes
+// crash (VectorDCE).
+std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo, bool untrusted,
+                               const std::optional<SpecializationValues>& values, Passes passes = Passes::all) {
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(passes != Passes::reductions);
+  options.set_validator_options(validatorOptions());
+  return runPasses(words, options, [&](spvtools::Optimizer& optimizer) {
+    optimizer.SetValidateAfterAll(untrusted);
+    if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+    if (values) registerSpecialization(optimizer, *values);
+    if (passes == Passes::inlining)
+      registerInlining(optimizer);
+    else
+      registerReductions(optimizer);
+    if (passes == Passes::all) optimizer.RegisterPerformancePasses();
+  });
 }
 
 // What the constants change in code that is optimized already. Of the ray generation shader of the path tracer for a scene
@@ -103,22 +114,12 @@ void registerRemoval(spvtools::Optimizer& optimizer) {
 }  // namespace
 
 std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, const SpecializationValues& values) {
-  std::vector<std::uint32_t> result;
-  std::string message;
-  bool succeeded = false;
-  runOnDeepStack(stackBytesFor(words.size() * sizeof(std::uint32_t)), [&] {
-    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
-    optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-      if (level <= SPV_MSG_ERROR) message = text;
-    });
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  return runPasses(words, options, [&](spvtools::Optimizer& optimizer) {
     registerSpecialization(optimizer, values);
     registerRemoval(optimizer);
-    spvtools::OptimizerOptions options;
-    options.set_run_validator(false);
-    succeeded = optimizer.Run(words.data(), words.size(), &result, options);
   });
-  if (!succeeded) throw Error(fmt::format("spirv-opt failed{}{}", message.empty() ? "" : ": ", message));
-  return result;
 }
 
 std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
@@ -146,18 +147,19 @@ ValidationProblem validate(const std::vector<std::uint32_t>& words) {
     tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& at, const char* text) {
       const std::string_view message = text;
       if (message.find("unrecognized extension") != message.npos) problem.unknown = true;
-      if (level <= SPV_MSG_ERROR && problem.text.empty()) problem.text = message, problem.instruction = at.index;
+      if (level > SPV_MSG_ERROR || !problem.text.empty()) return;
+      problem.text = message;
+      problem.instruction = at.index;
     });
-    if (tools.Validate(words.data(), words.size(), validatorOptions())) problem.text.clear();
+    if (tools.Validate(words.data(), words.size(), validatorOptions())) problem = {};
   });
-  // What SPIRV-Tools does not know is an invalid operand or opcode to it.
+  // SPIRV-Tools reports what it does not know as an invalid operand or opcode.
   const std::string& text = problem.text;
   const auto has = [&](std::string_view part) { return text.find(part) != text.npos; };
   const std::size_t invalid = text.find("Invalid ");
   problem.unknown = problem.unknown || has("Invalid opcode") || has("nvalid extended instruction") ||
                     has("is not allowed by Vulkan") || has("Invalid SPIR-V binary version") ||
                     (invalid != text.npos && text.find(" operand: ", invalid) != text.npos);
-  if (text.empty()) problem.unknown = false;
   return problem;
 }
 

@@ -3,6 +3,7 @@
 #ifndef QUINTET_SHADER_OPTIMIZER_H
 #define QUINTET_SHADER_OPTIMIZER_H
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

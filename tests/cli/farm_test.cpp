@@ -326,6 +326,10 @@ TEST_F(FarmSlurm, JobsAndTheirStates) {
   writeProgram("sacct", "echo '41_1|NODE_FAIL|node8'");
   EXPECT_THAT(quintet({"farm", "status", "farm"}, withPrograms()).out,
               AllOf(HasSubstr("NODE_FAIL on node8"), Not(HasSubstr("squeue failed"))));
+  writeProgram("sacct", "echo '41_0|NODE_FAIL|node8'");
+  const nlohmann::json first = status(withPrograms());
+  for (const std::size_t part : {0u, 2u, 4u}) EXPECT_EQ(first["notDone"][part]["slurm"]["nodes"], "node8");
+  for (const std::size_t part : {1u, 3u}) EXPECT_FALSE(first["notDone"][part].contains("slurm")) << "task 1 is unknown";
 }
 
 TEST_F(FarmSlurm, TasksRunTheirPartsAndRetryCrashes) {

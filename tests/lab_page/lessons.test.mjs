@@ -41,6 +41,9 @@ test("the checks of all tasks reject the lesson and accept the solution", { time
         assert.ok(!passed, `the unmodified lesson passes: ${text}`);
         assert.doesNotMatch(text, /does not render|does not answer|took too long/);
         assert.match(text, /solution/, `the message does not compare with the solution: ${text}`);
+        // Far from the limit of 0.4 %, so that noise cannot decide.
+        const percent = /([\d.]+) % of the pixels differ/.exec(text)?.[1];
+        if (percent) assert.ok(Number(percent) > 1.6, `only ${percent} % of the pixels differ`);
       }
       for (const task of tasks) {
         await task.getByRole("button", { name: "Solution" }).click();

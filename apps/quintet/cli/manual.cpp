@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/command.h"
+#include "job/version.h"
 
 namespace quintet::cli {
 namespace {
@@ -35,8 +36,8 @@ std::string upper(std::string text) {
 }
 
 std::string header(const std::string& page, const std::string& summary) {
-  return fmt::format(".TH {} 1 \"\" \"Quintet {}\" \"Quintet\"\n.SH NAME\n{} \\- {}\n", upper(page), QUINTET_VERSION,
-                     roff(page), roff(summary));
+  return fmt::format(".TH {} 1 \"\" \"Quintet {}\" \"Quintet\"\n.SH NAME\n{} \\- {}\n", upper(page),
+                     job::quintetVersion(), roff(page), roff(summary));
 }
 
 // "\fB\-o\fR, \fB\-\-output\fR \fIFILE\fR"
@@ -71,7 +72,7 @@ constexpr Row kStatuses[] = {
     {"2", "Wrong command line: an unknown option or program, or a value out of range."},
     {"3", "render or run wrote the image, but --spp or --time ended the render before it reached --until-error."},
     {"4", "The driver or Quintet crashed."},
-    {"5", "farm run or farm merge is a different version of Quintet than the one that made the plan."},
+    {"5", "The plan of farm run or farm merge was made by a different version of Quintet."},
     {"130, 143", "Ended by SIGINT (Ctrl-C) or SIGTERM."},
     {"137", "The process was killed (SIGKILL), possibly because memory ran out."},
 };

@@ -318,7 +318,7 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
         .candidates = {.names = previewNames()}}});
 }
 
-void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+void declareImageOptions(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   declareImage(table, texts, options);
   declareFrames(table, texts, options);
   declareFrame(table, texts, "Render");
@@ -326,6 +326,10 @@ void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& opt
   declareQuality(table, texts, options);
   declareView(table, texts, options);
   declareAnimation(table, texts, options);
+}
+
+void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  declareImageOptions(table, texts, options);
   declareProgramName(table, options);
   declareProgram(table, options);
 }

@@ -84,6 +84,8 @@ void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& option
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
 // The part of declareProcess() that decides which devices render: also a list of them.
 void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+// What `render` and `run` share: what an image looks like, without the program.
+void declareImageOptions(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // What an image of a scene looks like: every option of `render` but its files, devices, messages and checkpoints.
 void declareRendering(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declarePrint(OptionTable& table, RenderTexts& texts);  // what the program prints
@@ -96,7 +98,8 @@ void convert(const RenderTexts& texts, RenderOptions& options);
 void chooseVideo(RenderOptions& options);
 // --frame, --frames, --at: which frames the request is for, and whether each is written. Throws UsageError.
 void convertFrames(const RenderTexts& texts, RenderOptions& options);
-// All of this for a render whose scene and output file are in `texts.scene` and `options.output.file`. Throws UsageError.
+// Converts the options of declareRendering(): convert(), chooseVideo() and convertFrames(). The scene and the output file
+// are in `texts.scene` and `options.output.file`. Throws UsageError.
 void convertRendering(const RenderTexts& texts, RenderOptions& options);
 // The part of convert() that `merge` needs.
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output);

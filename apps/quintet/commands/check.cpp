@@ -32,6 +32,7 @@
 #include "job/module_checks.h"
 #include "job/program_checks.h"
 #include "job/scene_source.h"
+#include "job/version.h"
 #include "output/plan.h"
 
 namespace quintet::cli {
@@ -226,8 +227,8 @@ void writeGraph(const std::filesystem::path& graph, const std::optional<check::P
 
 // `complete`: the file is not replaced by one with more results.
 void writeSarif(const job::CheckReport& report, const Options& options, bool complete) {
-  writeFile(outputFile(options.sarif),
-            check::sarifText(report.diagnostics(), report.suppressed(), report.sources(), QUINTET_VERSION, complete));
+  writeFile(outputFile(options.sarif), check::sarifText(report.diagnostics(), report.suppressed(), report.sources(),
+                                                        job::quintetVersion(), complete));
 }
 
 // Writes the files that the options request. Returns the exit status.

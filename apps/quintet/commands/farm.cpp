@@ -9,6 +9,14 @@
 
 namespace quintet::cli {
 
+Option planArgument(std::filesystem::path& plan) {
+  return {.names = "PLAN",
+          .help = "The file plan.json, or its folder",
+          .target = &plan,
+          .candidates = {.extensions = {"json"}, .folders = true},
+          .required = true};
+}
+
 void declarePlanned(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   declareRendering(table, texts, options);
   declareDevices(table, texts, options, kLaunchLimitHelp);
@@ -21,10 +29,10 @@ void declarePlanned(OptionTable& table, RenderTexts& texts, RenderOptions& optio
 void convertPlanned(RenderTexts& texts, RenderOptions& options, const std::filesystem::path& image, bool frames) {
   if (output::videoFormat(image))
     throw UsageError(
-        fmt::format("{}: a farm writes the images of the frames; make the video of them, for example with "
-                    "ffmpeg",
+        fmt::format("{}: a plan cannot write a video; write images of the frames with --image 'f####.png', and make "
+                    "the video of them, for example with ffmpeg",
                     image.string()));
-  if (output::isStandardOutput(image)) throw UsageError("--image: a farm writes files, not standard output");
+  if (output::isStandardOutput(image)) throw UsageError("--image: a plan writes files, not standard output");
   texts.output = image.string();
   options.output.file = image;
   options.output.everyFrame = frames;

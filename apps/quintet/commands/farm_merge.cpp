@@ -35,11 +35,7 @@ OptionTable declare(FarmMergeOptions& options) {
       "farm merge",
       "Verifies the parts of a plan and joins them to the image that one render would have written. One error "
       "names all parts that are missing, damaged or foreign.");
-  table.add({{.names = "PLAN",
-              .help = "The file plan.json, or its folder",
-              .target = &options.plan,
-              .candidates = {.extensions = {"json"}, .folders = true},
-              .required = true},
+  table.add({planArgument(options.plan),
              {.names = "-o,--output",
               .value = "FILE",
               .help = "Output file: .png, .exr, .hdr or .qfilm (default: the image of the plan)",

@@ -126,7 +126,7 @@ std::string summaryJson(const farm::Plan& plan, const farm::ScriptOptions& scrip
   return output::jsonLine({{"plan", farm::planId(plan)},
                            {"file", (plan.folder / farm::kPlanFile).string()},
                            {"image", plan.image.string()},
-                           {"kind", plan.kind == farm::PartKind::frames ? "frames" : "batches"},
+                           {"kind", farm::partKindName(plan.kind)},
                            {"parts", plan.parts.size()},
                            {"tasks", farm::taskCount(plan, scripts)}});
 }
@@ -153,11 +153,12 @@ void describeRender(farm::Plan& plan, const RenderOptions& options, bool frames)
   const program::Program program = output::withRequestedHeatMaps(named, options.output);
   const output::OutputPlan outputs = output::planOutputs(options.output, program, options.request.frames);
   job::RenderRequest request = requestFor(options, outputs);
-  if (frames)
+  if (frames) {
     request.checkpoint.file = plan.folder / "part.checkpoint.qfilm";
-  else
+  } else {
     request.film = plan.folder / "part.qfilm";
-  if (!frames) request.batches = job::BatchRange{plan.parts.front().first, plan.parts.back().last};
+    request.batches = job::BatchRange{plan.parts.front().first, plan.parts.back().last};
+  }
   const job::ResolvedJob job = job::resolve(std::move(request), program);
   const job::LoadedScene scene = job::SceneLoading(job.scene, job.request).finish();
   output::checkSize(outputs, scene.size);

@@ -38,11 +38,7 @@ OptionTable declare(FarmRunOptions& options) {
   OptionTable table("farm run",
                     "Renders a part of a plan of 'farm plan'. A part that is done is skipped; one that was interrupted "
                     "continues from its checkpoint.");
-  table.add({{.names = "PLAN",
-              .help = "The file plan.json, or its folder",
-              .target = &options.plan,
-              .candidates = {.extensions = {"json"}, .folders = true},
-              .required = true},
+  table.add({planArgument(options.plan),
              {.names = "PART", .help = "Number of the part, from 0", .target = &options.part, .required = true},
              {.names = "--device",
               .value = "NAMES",
@@ -99,8 +95,7 @@ int renderPart(const farm::Plan& plan, std::size_t part, const FarmRunOptions& r
                const Stopwatch& clock) {
   farm::requireSameVersion(plan, farm::machineName());
   const farm::PartCheck check = farm::checkPart(plan, part, farm::CheckDepth::content);
-  const bool isReplaced = run.force || check.state != farm::PartState::foreign;
-  if (!isReplaced)
+  if (check.state == farm::PartState::foreign && !run.force)
     throw FileError(farm::partFile(plan, part), "belongs to a different plan or part", Remedy::overwrite);
   if (check.state == farm::PartState::done) {
     if (!run.console.quiet) printMessage(fmt::format("{} is done", farm::partName(plan, part)));

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "cli/command.h"
 #include "cli/parser.h"
+#include "commands/farm.h"
 #include "farm/status.h"
 
 namespace quintet::cli {
@@ -22,11 +23,7 @@ OptionTable declare(FarmStatusOptions& options) {
       "farm status",
       "Shows which parts of a plan are done, missing, damaged, of a different plan or version, and with Slurm "
       "which ones are running or waiting.");
-  table.add({{.names = "PLAN",
-              .help = "The file plan.json, or its folder",
-              .target = &options.plan,
-              .candidates = {.extensions = {"json"}, .folders = true},
-              .required = true},
+  table.add({planArgument(options.plan),
              {.names = "--verify",
               .help = "Read all parts and compare their checksums (default: only headers and lengths)",
               .target = &options.verify},

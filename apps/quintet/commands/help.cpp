@@ -53,9 +53,8 @@ OptionTable declare(Options& options) {
 }
 
 OptionTable tableOf(const std::vector<std::string>& words) {
-  const std::string key = fmt::format("{}", fmt::join(words, "-"));
-  for (const Command& command : commands())
-    if (commandKey(command.name) == key) return command.options();
+  if (const NamedCommand found = commandNamed(words); found.command && found.words == words.size())
+    return found.command->options();
   throw UsageError(unknownCommandText(words.front(), words.size() > 1 ? words[1] : ""));
 }
 

@@ -71,13 +71,7 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
             "is PNG on standard output, -.exr OpenEXR (default: PROGRAM.png in the current folder)",
         .target = &texts.output,
         .candidates = {.extensions = {"png", "exr", "hdr", "mp4", "webm", "gif"}}}});
-  declareImage(table, texts, options);
-  declareFrames(table, texts, options);
-  declareFrame(table, texts, "Render");
-  declareExr(table, texts);
-  declareQuality(table, texts, options);
-  declareView(table, texts, options);
-  declareAnimation(table, texts, options);
+  declareImageOptions(table, texts, options);
   declareProgram(table, options);
   table.add("Program", {{.names = "--output",
                          .value = "NAME",

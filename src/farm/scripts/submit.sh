@@ -13,6 +13,7 @@ fi
 render=$(sbatch --parsable "$@" render.sbatch)
 render=${render%%;*}
 echo "render $render" > @JOBS@
+echo "tasks @TASKS@" >> @JOBS@
 merge=$(sbatch --parsable --dependency="afterany:$render" "$@" merge.sbatch)
 merge=${merge%%;*}
 echo "merge $merge" >> @JOBS@

@@ -2,12 +2,11 @@
 // quintet_ship_programs FOLDER: compiles the path tracer and the passes of the film for all scenes of triangles, and writes the
 // modules as CompilerOptions::shipped needs them. The build runs it, and embeds the folder in the binary. A program, an output
 // or a feature that is missing here is compiled at run time.
-#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>

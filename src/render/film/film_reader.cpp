@@ -26,6 +26,7 @@
 #include "base/hash.h"
 #include "base/memory_budget.h"
 #include "base/parallel.h"
+#include "base/plural.h"
 #include "render/film/film_format.h"
 #include "render/film/fixed_sum.h"
 
@@ -207,7 +208,7 @@ struct FilmReader::Impl {
       if (failure) std::rethrow_exception(failure);
       if (!valid) failBlocks();
     }
-    if (payloadLeft() != 0) fail(fmt::format("{} excess bytes", payloadLeft()));
+    if (payloadLeft() != 0) fail(counted(payloadLeft(), "excess byte"));
   }
   [[noreturn]] void failBlocks() const { fail("the blocks do not match the header"); }
 
