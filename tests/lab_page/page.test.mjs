@@ -345,6 +345,7 @@ test("the image is downloaded with its values as OpenEXR", async () => {
 
 test("a folder program says why it has no lecture file", async () => {
   await open("#lesson=17_records");
+  await waitForImage(page);
   await page.getByRole("button", { name: "Share" }).click();
   await page.getByRole("menuitem", { name: "Lecture file" }).click();
   await page.locator(".toast.error", { hasText: "it has the ray types" }).waitFor();

@@ -60,7 +60,7 @@ export class Downloads {
     const file = await this.imageFile();
     const image = file ? await dataAddress(file) : "";
     const program = workspace.program;
-    if (!program) return;
+    if (!program) return notify("No program is open yet", "error");
     const samples = this.facts.samples();
     const text = sharedPage({
       title: program.title,
@@ -79,9 +79,11 @@ export class Downloads {
   }
 
   async saveProgram(form: "zip" | "lecture"): Promise<void> {
+    const { program } = this.workspace;
+    if (!program) return notify("No program is open yet", "error");
     try {
       await this.workspace.save();
-      const file = await api.export(this.workspace.program!.name, form);
+      const file = await api.export(program.name, form);
       download(file, form === "zip" ? `${this.name}.zip` : `${this.name}.rt.glsl`);
     } catch (error) {
       notify((error as Error).message, "error");
