@@ -19,8 +19,8 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::uint32_t kWidth = 20, kHeight = 14;
-constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+constexpr std::uint32_t kMatteWidth = 20, kMatteHeight = 14;
+constexpr std::size_t kPixels = std::size_t{kMatteWidth} * kMatteHeight;
 
 // MurmurHash3_x86_32 with seed 0, with 64-bit integers and a padded copy of the name.
 std::uint32_t hashOf(const std::string& name) {
@@ -287,7 +287,7 @@ TEST_F(CryptomatteFile, MattesDoNotDependOnTheFile) {
     for (const auto& [name, hex] : all.manifest().items()) {
       std::vector<float> matte = all.matte({name});
       for (std::size_t i = 0; i < kPixels; ++i) {
-        const std::size_t x = i % kWidth, y = i / kWidth;
+        const std::size_t x = i % kMatteWidth, y = i / kMatteWidth;
         const bool inside = std::string(file) != "region.exr" || (x >= 5 && x < 14 && y >= 3 && y < 11);
         if (!inside) matte[i] = 0;
       }

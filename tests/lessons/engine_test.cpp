@@ -8,7 +8,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kMargin = 3e-4;
+constexpr double kFolderMargin = 3e-4;
 
 struct Blocked {
   bool foil = false;
@@ -20,7 +20,7 @@ Blocked blockers(const scene::Scene& scene, const HostRay& ray, bool& decided) {
   double from = 1e-6;
   while (true) {
     const HostHit hit = closestTriangle(scene, ray, from, 1e4);
-    decided = decided && hit.margin > kMargin;
+    decided = decided && hit.margin > kFolderMargin;
     if (hit.t < 0) return result;
     (hit.instance == 2 ? result.foil : result.other) = true;
     from = hit.t + 1e-7;
@@ -35,7 +35,7 @@ TEST(LessonRecords, UsesHitGroupsRayTypesAndRecordData) {
   const auto pixel = [&](dvec2 point, bool wantFree) {
     const HostRay ray = cameraRay({1.5, 3, 6}, {0, 0.7, 0}, {0, 1, 0}, 35, 1.5, point);
     const HostHit hit = closestTriangle(scene, ray, 1e-6, 1e4);
-    if (hit.margin < kMargin) return kUndecided;
+    if (hit.margin < kFolderMargin) return kUndecided;
     if (hit.t < 0) return wantFree ? glm::dvec4(0, 0, 0, 1) : glm::dvec4(0.35, 0.5, 0.75, 1);
     if (hit.instance == 2) return wantFree ? glm::dvec4(0, 0, 0, 1) : glm::dvec4(0.6 * dvec3(0.2, 0.75, 0.35), 1);
     const HostSurface s = surfaceAt(scene, hit);
@@ -45,7 +45,7 @@ TEST(LessonRecords, UsesHitGroupsRayTypesAndRecordData) {
     if (wantFree) {
       const HostHit up = closestTriangle(scene, {s.position + 1e-6 * geometric, geometric}, 1e-6, 1e4);
       free += up.t > 0;
-      return up.margin < kMargin ? kUndecided : glm::dvec4(dvec3(std::max(up.t, 0.0)), 1);
+      return up.margin < kFolderMargin ? kUndecided : glm::dvec4(dvec3(std::max(up.t, 0.0)), 1);
     }
     dvec3 base(0.8);
     if (hit.instance == 1) {
@@ -104,7 +104,7 @@ void expectLambert(const LambertLight& given, std::uint32_t width) {
         dvec3 weight(1);
         for (int bounce = 0; bounce <= 8; ++bounce) {
           const HostHit hit = closestTriangle(scene, ray, 1e-6, 1e5);
-          if (hit.margin < kMargin) return kUndecided;
+          if (hit.margin < kFolderMargin) return kUndecided;
           if (hit.t < 0)
             return glm::dvec4(
                 weight * glm::mix(dvec3(0.85, 0.8, 0.75), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
@@ -122,7 +122,7 @@ void expectLambert(const LambertLight& given, std::uint32_t width) {
           }
           const double cosine = std::max(0.0, glm::dot(normal, toLight));
           const HostHit shadow = closestTriangle(scene, {position, toLight}, 1e-6, 1e5);
-          if (cosine > 0 && shadow.margin < kMargin) return kUndecided;
+          if (cosine > 0 && shadow.margin < kFolderMargin) return kUndecided;
           shadowed += shadow.t > 0;
           const dvec3 sun = shadow.t < 0 ? given.light * cosine : dvec3(0);
           return glm::dvec4(weight * color * (given.ambient + sun), 1);

@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kMargin = 2e-4;
+constexpr double kStageMargin = 2e-4;
 
 // Returns all hits of a ray, sorted by distance.
 std::vector<HostHit> allHits(const scene::Scene& scene, const HostRay& ray, bool& decided) {
@@ -15,7 +15,7 @@ std::vector<HostHit> allHits(const scene::Scene& scene, const HostRay& ray, bool
   double from = 1e-9;
   while (true) {
     const HostHit hit = closestTriangle(scene, ray, from, 1000);
-    decided = decided && hit.margin > kMargin;
+    decided = decided && hit.margin > kStageMargin;
     if (hit.t < 0) return hits;
     hits.push_back(hit);
     from = hit.t + 1e-7;
@@ -116,7 +116,7 @@ TEST(LessonCallable, CallsTheMaterialOfEachInstance) {
       [&](dvec2 point) {
         const HostHit hit =
             closestTriangle(scene, cameraRay({0, 0, 7}, {0, 0, 0}, {0, 1, 0}, 35, 1.5, point), 0.001, 1000);
-        if (hit.margin < kMargin) return kUndecided;
+        if (hit.margin < kStageMargin) return kUndecided;
         if (hit.t < 0) return glm::dvec4(0.08, 0.09, 0.12, 1);
         const HostSurface s = surfaceAt(scene, hit);
         const double light = glm::dot(s.normal, toLight);

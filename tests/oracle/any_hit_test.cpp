@@ -3,7 +3,7 @@
 #include "checks.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::any_hit_test {
 namespace {
 
 // Action of the any-hit shader; it is the custom index of the instance.
@@ -200,4 +200,4 @@ TEST(AnyHit, HandlesOneCandidateExactly) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::any_hit_test

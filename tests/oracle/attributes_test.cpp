@@ -8,7 +8,7 @@
 #include "harness.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::attributes_test {
 namespace {
 
 constexpr std::uint32_t kLayers = 8;
@@ -239,4 +239,4 @@ TEST(Attributes, KeepsAttributesIfBoxesReportOutOfRange) {
 TEST(Attributes, KeepsAttributesThatAreWrittenOnlyInRange) { checkBoxes(2, kOpaque, Source::attributes, nullptr); }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::attributes_test

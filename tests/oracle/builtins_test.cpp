@@ -6,7 +6,7 @@
 #include "checks.h"
 #include "program.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::builtins_test {
 namespace {
 
 struct RayArguments {
@@ -301,4 +301,4 @@ TEST(BuiltIns, KeepsValuesAfterANestedTrace) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::builtins_test

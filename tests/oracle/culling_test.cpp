@@ -4,7 +4,7 @@
 #include "checks.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::culling_test {
 namespace {
 
 constexpr std::uint32_t kFlip = VK_GEOMETRY_INSTANCE_TRIANGLE_FLIP_FACING_BIT_KHR;
@@ -121,4 +121,4 @@ TEST(Culling, SkipsTriangles) { checkTable(true, true); }
 TEST(Culling, SkipsBoxes) { checkTable(false, true); }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::culling_test

@@ -11,7 +11,7 @@
 #include "harness.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::drivers_test {
 namespace {
 
 // ---- Build ranges
@@ -245,4 +245,4 @@ TEST(BareDriver, StoresPipelinesInThePipelineCache) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::drivers_test

@@ -8,7 +8,7 @@
 #include "child.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::groups_test {
 namespace {
 
 // ---- Two hit groups with the same intersection stage and different any-hit shaders
@@ -145,4 +145,4 @@ TEST(BareDriver, SupportsEveryStageInLibraries) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::groups_test

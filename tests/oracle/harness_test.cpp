@@ -4,7 +4,7 @@
 
 #include "checks.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::harness_test {
 namespace {
 
 constexpr std::uint32_t version(std::uint32_t major, std::uint32_t minor, std::uint32_t patch) {
@@ -44,4 +44,4 @@ TEST(Harness, HasUniqueQuirkIds) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::harness_test

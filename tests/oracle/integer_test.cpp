@@ -5,7 +5,7 @@
 #include "child.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::integer_test {
 namespace {
 
 constexpr std::uint32_t kWidth = 512, kHeight = 64;
@@ -132,4 +132,4 @@ TEST(BareDriver, ComputesIntegersWithoutEnvironmentVariables) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::integer_test

@@ -3,7 +3,7 @@
 #include "checks.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::intersection_test {
 namespace {
 
 // Reports that the intersection shader makes in this order.
@@ -217,4 +217,4 @@ TEST(Intersection, KeepsAttributesOfTheCommittedReport) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::intersection_test

@@ -6,7 +6,7 @@
 #include "harness.h"
 #include "program.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::launch_test {
 namespace {
 
 TEST(Launches, ReadsTheSizeFromMemory) {
@@ -66,4 +66,4 @@ void main() {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::launch_test

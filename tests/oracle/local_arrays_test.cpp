@@ -4,7 +4,7 @@
 #include "checks.h"
 #include "program.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::local_arrays_test {
 namespace {
 
 struct Stack {
@@ -97,4 +97,4 @@ TEST(LocalArrays, KeepsArraysAcrossReports) { checkStacks(kStackIntersection, &k
 TEST(LocalArrays, KeepsVectorsAcrossReports) { checkStacks(kVectorIntersection, nullptr); }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::local_arrays_test

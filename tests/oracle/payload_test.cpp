@@ -5,7 +5,7 @@
 #include "checks.h"
 #include "program.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::payload_test {
 namespace {
 
 // One payload of each size, at unordered locations with gaps.
@@ -228,4 +228,4 @@ TEST(Callables, AreCallableFromEveryAllowedStage) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::payload_test

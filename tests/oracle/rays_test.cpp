@@ -5,7 +5,7 @@
 #include "checks.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::rays_test {
 namespace {
 
 mat4 scaled(float s) { return glm::scale(mat4(1.0f), vec3(s)); }
@@ -184,4 +184,4 @@ TEST(Rays, FindsTheNearestHit) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::rays_test

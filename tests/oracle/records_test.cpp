@@ -9,7 +9,7 @@
 #include "harness.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::records_test {
 namespace {
 
 // Returns geometries with one triangle each, at distances of 4 in x.
@@ -244,4 +244,4 @@ TEST(Records, CallsNoShaderForUnusedRecords) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::records_test

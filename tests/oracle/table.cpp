@@ -24,7 +24,7 @@ std::string words(const std::string& name) {
   return text;
 }
 
-std::string_view textOf(std::string_view quirk) {
+std::string_view quirkText(std::string_view quirk) {
   for (const KnownQuirk& known : kAllQuirks)
     if (known.id == quirk) return known.text;
   return quirk;
@@ -58,7 +58,7 @@ std::string TableListener::markdown(const std::string& device) const {
       failures += fmt::format("\n{}.{}:\n{}", row.suite, row.name, row.failure);
       ++failed;
     } else if (!row.wrong.empty()) {
-      result = fmt::format("known quirk, {} wrong: {}", row.wrong, textOf(row.quirk));
+      result = fmt::format("known quirk, {} wrong: {}", row.wrong, quirkText(row.quirk));
       ++known;
     } else {
       ++passed;

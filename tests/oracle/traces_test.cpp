@@ -6,7 +6,7 @@
 #include "harness.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::traces_test {
 namespace {
 
 // ---- Recursion
@@ -240,4 +240,4 @@ TEST(Traces, LowersTmaxToTheNearestHit) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::traces_test

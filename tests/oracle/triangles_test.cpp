@@ -5,7 +5,7 @@
 #include "checks.h"
 #include "probe.h"
 
-namespace quintet::oracle {
+namespace quintet::oracle::triangles_test {
 namespace {
 
 // p = (1 - u - v) v0 + u v1 + v v2, in rotated, sheared and mirrored instances.
@@ -233,4 +233,4 @@ TEST(TriangleHits, MissesTrianglesWithoutArea) {
 }
 
 }  // namespace
-}  // namespace quintet::oracle
+}  // namespace quintet::oracle::triangles_test

@@ -12,6 +12,7 @@
 #include "program/gsn/lecture.h"
 #include "program/heat.h"
 #include "program/load.h"
+#include "scene_builder.h"
 
 namespace quintet::job {
 namespace {
@@ -23,19 +24,9 @@ std::vector<std::string> allHeatMaps() {
 }
 
 // A box of two units at the origin, for intersection shaders.
-std::shared_ptr<const scene::Scene> boxScene() {
-  scene::PrimitiveSet set;
-  set.kind = scene::PrimitiveSetKind::custom;
-  set.boxes.push_back({{-1.0f, -1.0f, -1.0f}, {1.0f, 1.0f, 1.0f}});
-  scene::Scene scene;
-  scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
-  scene.instances.emplace_back().mesh = 0;
-  return std::make_shared<const scene::Scene>(std::move(scene));
-}
-
 // The ray of pixel 0 hits the box, where another ray starts that hits nothing and skips closest-hit shaders. The rays of
 // other pixels hit nothing. Then follow a ray that skips closest-hit shaders, and a trace with mask 0, which is no ray.
-constexpr const char* kToml = R"([program]
+constexpr const char* kHeatToml = R"([program]
 ray_generation = "main.rgen"
 samples_per_launch = 4
 any_hit_for_all = true
@@ -118,10 +109,10 @@ class HeatTest : public testing::Test {
   }
   static RenderRequest boxRequest(std::uint64_t samples) {
     RenderRequest request = makeRequest({2, 1}, samples, allHeatMaps());
-    request.loadedScene = boxScene();
+    request.loadedScene = quintet::test::boxScene();
     return request;
   }
-  static program::Program boxProgram() { return program::parseProgram(kToml, "box", "box", kFiles); }
+  static program::Program boxProgram() { return program::parseProgram(kHeatToml, "box", "box", kFiles); }
 
   PrintCounter observer_;
   std::unique_ptr<RenderJob> job_;

@@ -14,6 +14,7 @@
 #include "program/gsn/lecture.h"
 #include "program/heat.h"
 #include "program/load.h"
+#include "scene_builder.h"
 
 namespace quintet::job {
 namespace {
@@ -45,7 +46,7 @@ std::vector<std::string> textsOf(const std::vector<PrintedLine>& lines) {
 }
 
 // All six stages print. The rays of pixels with x = 0 hit the box, the others miss it.
-constexpr const char* kToml = R"([program]
+constexpr const char* kPrintToml = R"([program]
 ray_generation = "main.rgen"
 samples_per_launch = 4
 any_hit_for_all = true
@@ -119,16 +120,6 @@ void main() {
   };
 }
 
-std::shared_ptr<const scene::Scene> boxScene() {
-  scene::PrimitiveSet set;
-  set.kind = scene::PrimitiveSetKind::custom;
-  set.boxes.push_back({{-1.0f, -1.0f, -1.0f}, {1.0f, 1.0f, 1.0f}});
-  scene::Scene scene;
-  scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
-  scene.instances.emplace_back().mesh = 0;
-  return std::make_shared<const scene::Scene>(std::move(scene));
-}
-
 class PrintTest : public testing::Test {
  protected:
   static Engine& engine() {
@@ -147,8 +138,8 @@ class PrintTest : public testing::Test {
   }
   // Renders the six stages.
   RenderResult renderBox(RenderRequest request, const Files& files) {
-    request.loadedScene = boxScene();
-    return render(request, program::parseProgram(kToml, "box", "box", files));
+    request.loadedScene = quintet::test::boxScene();
+    return render(request, program::parseProgram(kPrintToml, "box", "box", files));
   }
   RenderResult renderBox(const RenderRequest& request) { return renderBox(request, files()); }
 
@@ -194,16 +185,16 @@ float useNames() {
   }
   for (const std::vector<std::string>& outputs : {std::vector<std::string>{}, std::vector<std::string>{"heat_rays"}}) {
     RenderRequest request = makeRequest({2, 1}, 1);
-    request.loadedScene = boxScene();
+    request.loadedScene = quintet::test::boxScene();
     request.print = pixels(0, 0);
     request.outputs = outputs;
     observer_ = {};
-    render(request, program::withHeatMaps(program::parseProgram(kToml, "box", "box", own), outputs));
+    render(request, program::withHeatMaps(program::parseProgram(kPrintToml, "box", "box", own), outputs));
     EXPECT_EQ(std::ranges::count(textsOf(observer_.lines), "own 20"), 4) << outputs.size();
   }
   RenderRequest request = makeRequest({2, 1}, 1);
-  request.loadedScene = boxScene();
-  const program::Program program = program::parseProgram(kToml, "box", "box", own);
+  request.loadedScene = quintet::test::boxScene();
+  const program::Program program = program::parseProgram(kPrintToml, "box", "box", own);
   RenderJob job(engine(), resolve(requestForPixel(request, program, {0, 0}), program), observer_);
   const PixelExplanation explanation = PixelExplainer(engine(), job).explain({0, 0}, 0, observer_);
   bool hit = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <utility>
 
 namespace quintet::test {
@@ -91,6 +92,16 @@ int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::Col
                             static_cast<int>(scene.images.size()) - 1,
                             {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
   return static_cast<int>(scene.textures.size()) - 1;
+}
+
+std::shared_ptr<const scene::Scene> boxScene() {
+  scene::PrimitiveSet set;
+  set.kind = scene::PrimitiveSetKind::custom;
+  set.boxes.push_back({{-1.0f, -1.0f, -1.0f}, {1.0f, 1.0f, 1.0f}});
+  scene::Scene scene;
+  scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
+  scene.instances.emplace_back().mesh = 0;
+  return std::make_shared<const scene::Scene>(std::move(scene));
 }
 
 SceneBuilder& SceneBuilder::add(scene::Geometry geometry, const scene::Material& material,

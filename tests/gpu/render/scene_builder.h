@@ -4,6 +4,7 @@
 #define QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -25,6 +26,9 @@ scene::Geometry sphere(const vec3& center, float radius, int level);
 // index.
 int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba,
              io::ColorEncoding encoding = io::ColorEncoding::linear);
+
+// Returns a scene with one custom primitive: the box from -1 to 1.
+std::shared_ptr<const scene::Scene> boxScene();
 
 class SceneBuilder {
  public:

@@ -8,11 +8,12 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+
+#include "base/file.h"
 
 namespace quintet::check {
 namespace {
@@ -22,13 +23,6 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 const fs::path kRoot = QUINTET_SOURCE_ROOT;
-
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 TEST(DiagnosticCatalog, HasSortedUniqueIds) {
   const auto all = allDiagnostics();
@@ -91,7 +85,7 @@ TEST(DiagnosticCatalog, HasAPageWithAllSectionsForEachId) {
 }
 
 TEST(DiagnosticCatalog, ListsEachPage) {
-  const std::string list = textOf(kRoot / "docs/diagnostics/README.md");
+  const std::string list = readTextFile(kRoot / "docs/diagnostics/README.md");
   std::size_t pages = 0;
   for (const auto& entry : fs::directory_iterator(kRoot / "docs/diagnostics")) {
     const std::string name = entry.path().stem().string();
@@ -113,7 +107,7 @@ TEST(DiagnosticCatalog, HasAllIdsOfTheSources) {
   for (const char* folder : {"src", "apps"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
-      const std::string text = textOf(entry.path());
+      const std::string text = readTextFile(entry.path());
       for (std::sregex_iterator i(text.begin(), text.end(), literal), end; i != end; ++i) used.insert((*i)[1]);
     }
   }
@@ -126,11 +120,11 @@ TEST(DiagnosticCatalog, NamesTheFileThatReportsEachId) {
   std::map<std::string, std::string> rules;  // file without extension, relative to the folder -> text
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.path().extension() == ".cpp")
-      rules[fs::relative(entry.path(), folder).replace_extension().generic_string()] = textOf(entry.path());
+      rules[fs::relative(entry.path(), folder).replace_extension().generic_string()] = readTextFile(entry.path());
   for (const DiagnosticInfo& info : allDiagnostics()) {
     const std::string rule(info.rule), literal = '"' + std::string(info.id) + '"';
     const std::string text =
-        rules.contains(rule) ? rules.at(rule) : textOf(kRoot / "src" / fs::path(rule).concat(".cpp"));
+        rules.contains(rule) ? rules.at(rule) : readTextFile(kRoot / "src" / fs::path(rule).concat(".cpp"));
     // The instrumented run formats its ids.
     const bool formatted = info.id < "Q010" && text.find("\"Q00{}\"") != std::string::npos;
     EXPECT_TRUE(formatted || text.find(literal) != std::string::npos) << rule << " does not report " << info.id;

@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
 
+#include "base/file.h"
 #include "base/toml_reader.h"
 #include "check/catalog.h"
 #include "check_test_support.h"
@@ -28,13 +28,6 @@ const fs::path kCheck = fs::path(QUINTET_SOURCE_ROOT) / "tests/check";
 const fs::path kMistakes = kCheck / "mistakes";
 const fs::path kIdioms = kCheck / "idioms";
 
-std::string textOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 std::vector<std::string> programsIn(const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -45,7 +38,7 @@ std::vector<std::string> programsIn(const fs::path& folder) {
 
 // The names in a list: the first word of each line that is not empty and no comment.
 std::set<std::string> namesIn(const char* list) {
-  std::istringstream lines(textOf(kCheck / list));
+  std::istringstream lines(readTextFile(kCheck / list));
   std::set<std::string> names;
   for (std::string line, name; std::getline(lines, line);)
     if (std::istringstream(line) >> name && name.front() != '#') names.insert(name);
@@ -54,7 +47,7 @@ std::set<std::string> namesIn(const char* list) {
 
 void readFolder(const fs::path& folder, Files& files) {
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file()) files[entry.path().filename()] = textOf(entry.path());
+    if (entry.is_regular_file()) files[entry.path().filename()] = readTextFile(entry.path());
 }
 
 // facts.toml: [[geometry]] kind, alpha, name, material; [[instance]] name, first, count, mask, force_opaque,

@@ -145,7 +145,7 @@ TEST(ChooseEnvironment, UsesTheFirstSpecified) {
 
 // The header states 192 MiB of pixels, which do not follow.
 TEST(ChooseEnvironment, LimitsTheMemory) {
-  const test::TempFolder folder;
+  const quintet::test::TempFolder folder;
   writeFile(folder / "sky.hdr", std::string_view("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n"));
   EnvironmentRequest request;
   request.source = folder / "sky.hdr";
