@@ -40,7 +40,7 @@ demo: ## Install packages, build, create the demo scene and render it
 	@echo "Image: $(DEMO)/demo.png"
 
 # Compiling each header alone, inserting bugs, building the examples against the installed package, and the longest suites
-# take a third of the time. They are left to CI and `ctest --preset release -L '^(headers|mutation|long)$$'`. The checks of all
+# take half of the time. They are left to CI and `ctest --preset release -L '^(headers|mutation|long)$$'`. The checks of all
 # tasks in the browser take longer than a quarter of an hour: `ctest --preset release -L nightly`.
 test: build ## Install packages, build and run all tests
 	@ctest --preset $(PRESET) --output-on-failure --no-tests=error -j $(JOBS) -LE '^($(if $(filter true,$(CI)),,headers|mutation|long|)nightly)$$' $(CTEST_FLAGS)

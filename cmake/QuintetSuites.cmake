@@ -25,11 +25,13 @@ endif()
 set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
-# The longest suites: those that compare histograms of many samples with integrals, for every lobe or stack of panes, the one
-# that explains samples of all programs, the coverage of error estimates, and the one that inserts a bug of each kind into
-# programs. Together they take a fifth of the time of all suites. 'make test' leaves them to CI and `ctest --preset release -L
-# long`.
-set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights gpu.ErrorEstimate gpu.ExplainedPrograms unit.Mutation)
+# The longest suites: those that compare many samples with integrals, for every lobe, solid or stack of panes, the ones that
+# explain samples of all programs or apply every kind of edit, the coverage of error estimates, and those that check all
+# built-in programs or programs with a mistake of each kind. Together they take a third of the time of all suites. 'make test'
+# leaves them to CI and `ctest --preset release -L long`.
+set(QUINTET_LONG_SUITES gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate gpu.ExplainedPrograms
+  gpu.LampBehindPanes gpu.PaneWeights gpu.SessionEdits gpu.SolidAlpha gpu.SolidFarSide gpu.SolidLight unit.CheckBuiltIn
+  unit.LibraryMutation unit.Mistakes unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)

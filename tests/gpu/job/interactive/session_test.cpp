@@ -253,6 +253,9 @@ TEST_F(SessionTest, AnAutomaticCameraStaysWhenInstancesMove) {
   EXPECT_TRUE(test::equalSums(sums(*session), moved));
 }
 
+// They compile a pipeline for each set of features.
+class SessionEdits : public SessionTest {};
+
 // Each edit gives the film of a scene file that states it. `compilations` and `builds`: how often the program is
 // compiled and the scene is built.
 struct SceneEdit {
@@ -262,7 +265,7 @@ struct SceneEdit {
   int compilations = 0, builds = 0;
 };
 
-TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
+TEST_F(SessionEdits, GiveTheFilmOfTheEditedScene) {
   const std::vector<SceneEdit> edits{
       {"base color", EditMaterial{"red", {{"baseColor", {0.25, 0.5, 1}}}}, "[0.8, 0.1, 0.1]", "[0.25, 0.5, 1.0]"},
       {"emission", EditMaterial{"glow", {{"emissive", {0.5, 2, 1}}}}, "[1.0, 0.5, 0.25]", "[0.5, 2.0, 1.0]"},
