@@ -38,7 +38,7 @@ std::string asTable(const Json& json, const std::string& prefix = {}) {
   return text;
 }
 
-struct Options {
+struct BenchOptions {
   job::BenchmarkRequest request;
   job::ProgramBenchmarkRequest own;
   std::vector<std::string> positional;
@@ -48,7 +48,7 @@ struct Options {
   bool json = false;
 };
 
-OptionTable declare(Options& options) {
+OptionTable declareBench(BenchOptions& options) {
   OptionTable table("bench",
                     "Measures the rays per second of a scene with the path tracer, and the rate of minimal shaders for "
                     "the same rays; or the launches of any program.");
@@ -110,7 +110,7 @@ OptionTable declare(Options& options) {
 }
 
 // Options of the other form are errors.
-void rejectOptions(const Options& options, bool ofScene) {
+void rejectOptions(const BenchOptions& options, bool ofScene) {
   const auto reject = [&](bool given, const char* name, const char* form) {
     if (given) throw UsageError(fmt::format("{} requires the form 'quintet bench {}'", name, form));
   };
@@ -126,13 +126,13 @@ void rejectOptions(const Options& options, bool ofScene) {
 }  // namespace
 
 OptionTable benchOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  BenchOptions options;
+  return declareBench(options).withoutTargets();
 }
 
 int benchCommand(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return 0;
+  BenchOptions options;
+  if (!parse(declareBench(options), arguments)) return 0;
   const std::vector<std::string>& positional = options.positional;
   if (positional.empty()) throw UsageError("no scene or program given; see 'quintet bench --help'");
   if (positional.size() > 2)

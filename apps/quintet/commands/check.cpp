@@ -38,7 +38,7 @@
 namespace quintet::cli {
 namespace {
 
-struct Options {
+struct CheckOptions {
   job::CheckRequest request;
   std::string size, region, samples, timeout;  // of --instrument
   std::filesystem::path sarif, graph;
@@ -53,7 +53,7 @@ struct Options {
   bool strict() const { return request.run.load.strict; }
 };
 
-OptionTable declare(Options& options) {
+OptionTable declareCheck(CheckOptions& options) {
   OptionTable table("check",
                     "Compiles programs and checks how their shaders fit together and to a scene, without rendering.");
   table.add(
@@ -160,7 +160,7 @@ std::filesystem::path outputFile(const std::filesystem::path& file) {
 }
 
 // The files that the options name. Standard output has room for one of them.
-void checkFiles(const Options& options) {
+void checkFiles(const CheckOptions& options) {
   if (!options.graph.empty()) {
     const std::string extension = graphExtension(options.graph);
     if (extension != ".svg" && extension != ".dot" && extension != ".json")
@@ -172,9 +172,9 @@ void checkFiles(const Options& options) {
   if (outputs > 1) throw UsageError("--json, --sarif - and --graph -.svg exclude each other");
 }
 
-std::optional<Options> parseOptions(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return std::nullopt;
+std::optional<CheckOptions> parseCheck(Arguments arguments) {
+  CheckOptions options;
+  if (!parse(declareCheck(options), arguments)) return std::nullopt;
   job::CheckRequest& request = options.request;
   job::RenderRequest& run = request.run;
   if (!request.instrument) {
@@ -226,14 +226,14 @@ void writeGraph(const std::filesystem::path& graph, const std::optional<check::P
 }
 
 // `complete`: the file is not replaced by one with more results.
-void writeSarif(const job::CheckReport& report, const Options& options, bool complete) {
+void writeSarif(const job::CheckReport& report, const CheckOptions& options, bool complete) {
   writeFile(outputFile(options.sarif), check::sarifText(report.diagnostics(), report.suppressed(), report.sources(),
                                                         job::quintetVersion(), complete));
 }
 
 // Writes the files that the options request. Returns the exit status.
 // `checks` is null for SPIR-V.
-int writeReport(const job::CheckReport& report, const job::ProgramChecks* checks, const Options& options) {
+int writeReport(const job::CheckReport& report, const job::ProgramChecks* checks, const CheckOptions& options) {
   if (!checks && !options.graph.empty() && report.programs.size() != 1)
     throw UsageError(fmt::format("--graph requires one pipeline, but {} are given", report.programs.size()));
   std::vector<Diagnostic> found = report.diagnostics();
@@ -258,7 +258,7 @@ int writeReport(const job::CheckReport& report, const job::ProgramChecks* checks
 // Prints what the check of each program found.
 class Printer : public job::CheckObserver {
  public:
-  Printer(const job::ProgramChecks* checks, const Options& options) : checks_(checks), options_(options) {}
+  Printer(const job::ProgramChecks* checks, const CheckOptions& options) : checks_(checks), options_(options) {}
 
   void started(const std::string& name) override {
     setWorkProgram(name);
@@ -302,10 +302,10 @@ class Printer : public job::CheckObserver {
   }
 
   const job::ProgramChecks* checks_;  // null for SPIR-V
-  const Options& options_;
+  const CheckOptions& options_;
 };
 
-void checkGraph(const Options& options) {
+void checkGraph(const CheckOptions& options) {
   if (options.graph.empty()) return;
   const std::size_t count = job::findPrograms(options.request.programs).size();
   if (count != 1) throw UsageError(fmt::format("--graph requires one program, but {} are given", count));
@@ -314,7 +314,7 @@ void checkGraph(const Options& options) {
 // Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status. `live` is a LiveCheck, or a
 // LiveModuleCheck with null `checks`. `prepare` throws UsageError if the options do not fit what is on disk.
 template <class Live, class Prepare>
-int watch(Live& live, const job::ProgramChecks* checks, const Options& options, const Prepare& prepare) {
+int watch(Live& live, const job::ProgramChecks* checks, const CheckOptions& options, const Prepare& prepare) {
   Printer printer(checks, options);
   const GracefulStop stop;
   int status = 0;
@@ -338,7 +338,7 @@ int watch(Live& live, const job::ProgramChecks* checks, const Options& options, 
   }
 }
 
-int checkSpirv(const Options& options) {
+int checkSpirv(const CheckOptions& options) {
   const job::ModuleCheckRequest request{options.request.programs, options.groups, options.request.device,
                                         !options.graph.empty()};
   if (options.watch) {
@@ -352,12 +352,12 @@ int checkSpirv(const Options& options) {
 }  // namespace
 
 OptionTable checkOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  CheckOptions options;
+  return declareCheck(options).withoutTargets();
 }
 
 int checkCommand(Arguments arguments) {
-  const std::optional<Options> options = parseOptions(arguments);
+  const std::optional<CheckOptions> options = parseCheck(arguments);
   if (!options) return 0;
   if (options->spirv) return checkSpirv(*options);
   const job::ProgramChecks checks(options->request);

@@ -25,7 +25,7 @@
 namespace quintet::cli {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string a, b, output, sideBySide, metric = "mae8", max, gammaB, maxMemory;
   std::string level, block, tolerance;
   std::vector<std::string> mayDiffer;
@@ -36,7 +36,7 @@ struct Options {
 };
 
 // Rejects options that have no effect.
-void checkApplicable(const Options& options) {
+void checkApplicable(const CompareOptions& options) {
   const auto reject = [](const char* name, bool given, const char* problem) {
     if (given) throw UsageError(fmt::format("{}: {}", name, problem));
   };
@@ -47,14 +47,14 @@ void checkApplicable(const Options& options) {
   reject("--tolerance", !options.zTest && !options.tolerance.empty(), kFilms);
   reject("--may-differ", !options.zTest && !options.mayDiffer.empty(), kFilms);
   reject("--max", options.zTest && !options.max.empty(), kImages);
-  reject("--metric", options.zTest && options.metric != Options().metric, kImages);
+  reject("--metric", options.zTest && options.metric != CompareOptions().metric, kImages);
   reject("--side-by-side", options.zTest && !options.sideBySide.empty(), kImages);
   reject("--gamma-b", options.zTest && !options.gammaB.empty(), kImages);
   reject("--layer", options.zTest && options.layer.has_value(), kImages);
   reject("--resize", options.zTest && options.resize, kImages);
 }
 
-OptionTable declare(Options& options) {
+OptionTable declareCompare(CompareOptions& options) {
   OptionTable table("compare", "Measures the difference between image A and image B, the reference.");
   const Candidates images{.extensions = {"png", "exr", "hdr", "jpg", "jpeg", "webp", "qfilm"}};
   std::vector<std::string> measures;
@@ -134,9 +134,9 @@ OptionTable declare(Options& options) {
   return table;
 }
 
-std::optional<Options> parseOptions(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return std::nullopt;
+std::optional<CompareOptions> parseCompare(Arguments arguments) {
+  CompareOptions options;
+  if (!parse(declareCompare(options), arguments)) return std::nullopt;
   if (options.b.empty()) throw UsageError("two images are required; see 'quintet compare --help'");
   checkApplicable(options);
   return options;
@@ -148,7 +148,9 @@ const output::Measure& findMeasure(const std::vector<output::Measure>& all, cons
   return all[parseChoice("--metric", name, names)];
 }
 
-std::size_t memoryLimit(const Options& options) { return parseBytes("--max-memory", options.maxMemory).value_or(0); }
+std::size_t memoryLimit(const CompareOptions& options) {
+  return parseBytes("--max-memory", options.maxMemory).value_or(0);
+}
 
 io::Image readInput(const std::string& file, const std::optional<std::string>& layer, std::size_t maxMemory) {
   MemoryBudget budget(file, maxMemory);
@@ -173,7 +175,7 @@ void checkPng(const std::string& option, const std::string& file) {
   checkWritable(file);
 }
 
-int compareFilms(const Options& options) {
+int compareFilms(const CompareOptions& options) {
   render::ZTestOptions test;
   test.level = parseReal("--level", options.level, 1e-12, 0.5).value_or(test.level);
   test.block = static_cast<std::uint32_t>(parseInteger("--block", options.block, 4, 4096).value_or(test.block));
@@ -189,7 +191,7 @@ int compareFilms(const Options& options) {
                       kRuntimeError);
 }
 
-int compareImages(const Options& options) {
+int compareImages(const CompareOptions& options) {
   const std::optional<double> limit = parseReal("--max", options.max, 0.0, 1e30);
   io::Image a = readInput(options.a, options.layer, memoryLimit(options));
   io::Image b = readInput(options.b, options.layer, memoryLimit(options));
@@ -214,12 +216,12 @@ int compareImages(const Options& options) {
 }  // namespace
 
 OptionTable compareOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  CompareOptions options;
+  return declareCompare(options).withoutTargets();
 }
 
 int compareCommand(Arguments arguments) {
-  const std::optional<Options> options = parseOptions(arguments);
+  const std::optional<CompareOptions> options = parseCompare(arguments);
   if (!options) return 0;
   findMeasure(output::measures({}), options->metric);
   checkPng("-o", options->output);

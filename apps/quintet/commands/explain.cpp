@@ -98,12 +98,12 @@ void printPage(const check::DiagnosticInfo& info, bool json) {
   writeFile("-", page.empty() ? fmt::format("{}: {}\n\n{}\n{}\n", info.id, info.title, info.why, info.fix) : page);
 }
 
-struct Options {
+struct ExplainOptions {
   std::vector<std::string> id;  // or words of a topic
   bool json = false;
 };
 
-OptionTable declare(Options& options) {
+OptionTable declareExplain(ExplainOptions& options) {
   std::vector<std::string> ids;
   for (const check::DiagnosticInfo& info : check::allDiagnostics()) ids.emplace_back(info.id);
   OptionTable table("explain", "Explains a diagnostic of the check, or lists all of them.");
@@ -123,13 +123,13 @@ OptionTable declare(Options& options) {
 }  // namespace
 
 OptionTable explainOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  ExplainOptions options;
+  return declareExplain(options).withoutTargets();
 }
 
 int explainCommand(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return 0;
+  ExplainOptions options;
+  if (!parse(declareExplain(options), arguments)) return 0;
   Infos found;
   if (options.id.empty())
     for (const check::DiagnosticInfo& info : check::allDiagnostics()) found.push_back(&info);

@@ -34,7 +34,7 @@ namespace {
 constexpr double kMaxPixel = 65535;
 constexpr std::size_t kMinWidth = 60, kMaxWidth = 100;  // columns
 
-struct Options : RenderOptions {
+struct ExplainPixelOptions : RenderOptions {
   uvec2 pixel{0};
   std::uint32_t sample = 0;
   bool payloads = false;
@@ -43,11 +43,11 @@ struct Options : RenderOptions {
   job::DiffTolerance tolerance;
 };
 
-struct Texts : RenderTexts {
+struct ExplainPixelTexts : RenderTexts {
   std::string pixel, sample, tolerance;
 };
 
-OptionTable declare(Options& options, Texts& texts) {
+OptionTable declareExplainPixel(ExplainPixelOptions& options, ExplainPixelTexts& texts) {
   OptionTable table(
       "explain-pixel",
       "Explains one sample of a pixel: prints its rays, what they hit and what they contribute. The other "
@@ -115,7 +115,7 @@ uvec2 parsePixel(const std::string& text) {
   return {static_cast<std::uint32_t>(*x), static_cast<std::uint32_t>(*y)};
 }
 
-void convertSample(const Texts& texts, Options& options) {
+void convertSample(const ExplainPixelTexts& texts, ExplainPixelOptions& options) {
   if (texts.pixel.empty()) throw UsageError("no pixel given; use --pixel X,Y");
   options.pixel = parsePixel(texts.pixel);
   options.sample = static_cast<std::uint32_t>(parseInteger("--sample", texts.sample, 0, job::kMaxSample).value_or(0));
@@ -130,10 +130,10 @@ void convertSample(const Texts& texts, Options& options) {
   convertFrames(texts, options);
 }
 
-std::optional<Options> parseOptions(Arguments arguments) {
-  Options options;
-  Texts texts;
-  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+std::optional<ExplainPixelOptions> parseExplainPixel(Arguments arguments) {
+  ExplainPixelOptions options;
+  ExplainPixelTexts texts;
+  if (!parse(declareExplainPixel(options, texts), arguments)) return std::nullopt;
   options.request.scene = texts.scene;
   options.request.commandLine = commandLine("explain-pixel", arguments);
   options.output.file = "image.png";  // of the render that is explained; written with the rays on request
@@ -154,7 +154,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
 std::size_t textWidth() { return std::clamp(terminalWidth(STDOUT_FILENO).value_or(kMaxWidth), kMinWidth, kMaxWidth); }
 
 job::PixelExplanation explain(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
-                              const program::Program& program, const Options& options, Console& console) {
+                              const program::Program& program, const ExplainPixelOptions& options, Console& console) {
   const job::RenderRequest request = job::requestForPixel(options.request, program, options.pixel);
   job::RenderJob job(engine, job::resolve(request, program), console, scene);
   setWorkStage("explaining a pixel");
@@ -163,14 +163,14 @@ job::PixelExplanation explain(job::Engine& engine, std::shared_ptr<job::Prepared
 }
 
 // Checks what can be checked before the work starts.
-output::OutputPlan planImage(job::Engine& engine, const program::Program& program, const Options& options) {
+output::OutputPlan planImage(job::Engine& engine, const program::Program& program, const ExplainPixelOptions& options) {
   gpu::requireGraphicsQueue(engine.context());
   return output::planOutputs(options.output, program, options.request.frames);
 }
 
 // The image of the explained render. Of a program that accumulates, up to the explained frame.
-job::RenderResult renderImage(job::RenderJob& job, const job::PixelExplanation& explanation, const Options& options,
-                              Console& console) {
+job::RenderResult renderImage(job::RenderJob& job, const job::PixelExplanation& explanation,
+                              const ExplainPixelOptions& options, Console& console) {
   if (!explanation.frames) return job.run(options.request.limits, console);
   const std::uint64_t frames = std::uint64_t{explanation.sample} + 1;
   while (job.sampleCount() < static_cast<double>(frames) && job.renderBatch(frames, console)) {
@@ -180,8 +180,8 @@ job::RenderResult renderImage(job::RenderJob& job, const job::PixelExplanation& 
 
 // Renders the image of the explained render, and writes it with the rays.
 void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene, const program::Program& program,
-                const output::OutputPlan& plan, const job::PixelExplanation& explanation, const Options& options,
-                Console& console) {
+                const output::OutputPlan& plan, const job::PixelExplanation& explanation,
+                const ExplainPixelOptions& options, Console& console) {
   job::RenderJob job(engine, job::resolve(options.request, program), console, scene);
   overlay::requireSceneCamera(explanation, job.camera());
   setWorkStage("rendering");
@@ -193,9 +193,9 @@ void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
   console.write(options.image, io::encodePng(image, job::metadataOf(result.provenance)));
 }
 
-// `other`: of Options::against. Returns the exit status.
+// `other`: of ExplainPixelOptions::against. Returns the exit status.
 int print(const job::PixelExplanation& explanation, const std::optional<job::PixelExplanation>& other,
-          const Options& options) {
+          const ExplainPixelOptions& options) {
   const bool json = options.console.json;
   if (!other) {
     writeFile("-", json ? job::explanationJson(explanation, options.request.commandLine)
@@ -212,13 +212,13 @@ int print(const job::PixelExplanation& explanation, const std::optional<job::Pix
 }  // namespace
 
 OptionTable explainPixelOptions() {
-  Options options;
-  Texts texts;
-  return declare(options, texts).withoutTargets();
+  ExplainPixelOptions options;
+  ExplainPixelTexts texts;
+  return declareExplainPixel(options, texts).withoutTargets();
 }
 
 int explainPixelCommand(Arguments arguments) {
-  const std::optional<Options> options = parseOptions(arguments);
+  const std::optional<ExplainPixelOptions> options = parseExplainPixel(arguments);
   if (!options) return 0;
   std::optional<job::PixelExplanation> other;
   if (!options->against.empty()) other = job::readExplanation(options->against);  // fails before the work starts

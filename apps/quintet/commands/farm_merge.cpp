@@ -30,7 +30,7 @@ struct FarmMergeOptions {
   bool force = false;
 };
 
-OptionTable declare(FarmMergeOptions& options) {
+OptionTable declareFarmMerge(FarmMergeOptions& options) {
   OptionTable table(
       "farm merge",
       "Verifies the parts of a plan and joins them to the image that one render would have written. One error "
@@ -70,13 +70,13 @@ int verifyFrames(const farm::Plan& plan, const FarmMergeOptions& options, Consol
 
 OptionTable farmMergeOptions() {
   FarmMergeOptions options;
-  return declare(options).withoutTargets();
+  return declareFarmMerge(options).withoutTargets();
 }
 
 int farmMergeCommand(Arguments arguments) {
   const Stopwatch clock;
   FarmMergeOptions options;
-  if (!parse(declare(options), arguments)) return 0;
+  if (!parse(declareFarmMerge(options), arguments)) return 0;
   if (options.plan.empty()) throw UsageError("no plan given; see 'quintet farm merge --help'");
   const farm::Plan plan = farm::readPlan(options.plan);
   farm::requireSameVersion(plan, farm::machineName());

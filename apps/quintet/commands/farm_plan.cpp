@@ -40,7 +40,7 @@ struct FarmPlanOptions {
   bool quiet = false;
 };
 
-OptionTable declare(FarmPlanOptions& options) {
+OptionTable declareFarmPlan(FarmPlanOptions& options) {
   OptionTable table(
       "farm plan",
       "Splits a render into parts for many machines, and writes a folder with the plan, a Slurm job array, its "
@@ -171,12 +171,12 @@ void describeRender(farm::Plan& plan, const RenderOptions& options, bool frames)
 
 OptionTable farmPlanOptions() {
   FarmPlanOptions options;
-  return declare(options).withoutTargets();
+  return declareFarmPlan(options).withoutTargets();
 }
 
 int farmPlanCommand(Arguments arguments) {
   FarmPlanOptions options;
-  const OptionTable table = declare(options);
+  const OptionTable table = declareFarmPlan(options);
   if (!parse(table, arguments)) return 0;
   if (options.texts.scene.empty()) throw UsageError("no scene given; see 'quintet farm plan --help'");
   if (options.folder.empty()) throw UsageError("no folder given (-o FOLDER); see 'quintet farm plan --help'");

@@ -34,7 +34,7 @@ struct FarmRunOptions {
   bool force = false;
 };
 
-OptionTable declare(FarmRunOptions& options) {
+OptionTable declareFarmRun(FarmRunOptions& options) {
   OptionTable table("farm run",
                     "Renders a part of a plan of 'farm plan'. A part that is done is skipped; one that was interrupted "
                     "continues from its checkpoint.");
@@ -117,13 +117,13 @@ int renderPart(const farm::Plan& plan, std::size_t part, const FarmRunOptions& r
 
 OptionTable farmRunOptions() {
   FarmRunOptions options;
-  return declare(options).withoutTargets();
+  return declareFarmRun(options).withoutTargets();
 }
 
 int farmRunCommand(Arguments arguments) {
   const Stopwatch clock;
   FarmRunOptions options;
-  if (!parse(declare(options), arguments)) return 0;
+  if (!parse(declareFarmRun(options), arguments)) return 0;
   if (options.plan.empty() || options.part.empty())
     throw UsageError("plan or part missing; see 'quintet farm run --help'");
   const farm::Plan plan = farm::readPlan(options.plan);

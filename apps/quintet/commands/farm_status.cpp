@@ -18,7 +18,7 @@ struct FarmStatusOptions {
   bool json = false;
 };
 
-OptionTable declare(FarmStatusOptions& options) {
+OptionTable declareFarmStatus(FarmStatusOptions& options) {
   OptionTable table(
       "farm status",
       "Shows which parts of a plan are done, missing, damaged, of a different plan or version, and with Slurm "
@@ -36,12 +36,12 @@ OptionTable declare(FarmStatusOptions& options) {
 
 OptionTable farmStatusOptions() {
   FarmStatusOptions options;
-  return declare(options).withoutTargets();
+  return declareFarmStatus(options).withoutTargets();
 }
 
 int farmStatusCommand(Arguments arguments) {
   FarmStatusOptions options;
-  if (!parse(declare(options), arguments)) return 0;
+  if (!parse(declareFarmStatus(options), arguments)) return 0;
   if (options.plan.empty()) throw UsageError("no plan given; see 'quintet farm status --help'");
   const farm::Status status = farm::readStatus(farm::readPlan(options.plan),
                                                options.verify ? farm::CheckDepth::content : farm::CheckDepth::header);

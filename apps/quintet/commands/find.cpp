@@ -26,17 +26,17 @@ namespace {
 constexpr double kMaxThreshold = 1e6;
 constexpr double kMaxLimit = 1000;
 
-struct Options : RenderOptions {
+struct FindOptions : RenderOptions {
   bool notFinite = false, fireflies = false;  // neither means both
   job::SearchOptions search;
   std::string command;  // that explains a sample, without pixel and sample
 };
 
-struct Texts : RenderTexts {
+struct FindTexts : RenderTexts {
   std::string threshold, limit;
 };
 
-OptionTable declare(Options& options, Texts& texts) {
+OptionTable declareFind(FindOptions& options, FindTexts& texts) {
   OptionTable table("find",
                     "Finds samples that are not finite (NaN or infinite), and fireflies, and prints the command that "
                     "explains each of them. No image is written. The status is 1 if a sample is found.");
@@ -95,10 +95,10 @@ std::vector<std::string> sharedArguments(Arguments arguments) {
   return shared;
 }
 
-std::optional<Options> parseOptions(Arguments arguments) {
-  Options options;
-  Texts texts;
-  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+std::optional<FindOptions> parseFind(Arguments arguments) {
+  FindOptions options;
+  FindTexts texts;
+  if (!parse(declareFind(options, texts), arguments)) return std::nullopt;
   options.request.scene = texts.scene;
   options.console.stopNote = "reporting what was found; press Ctrl-C again to quit without a report";
   options.command = commandLine("explain-pixel", sharedArguments(arguments));
@@ -121,13 +121,13 @@ std::optional<Options> parseOptions(Arguments arguments) {
 }  // namespace
 
 OptionTable findOptions() {
-  Options options;
-  Texts texts;
-  return declare(options, texts).withoutTargets();
+  FindOptions options;
+  FindTexts texts;
+  return declareFind(options, texts).withoutTargets();
 }
 
 int findCommand(Arguments arguments) {
-  const std::optional<Options> options = parseOptions(arguments);
+  const std::optional<FindOptions> options = parseFind(arguments);
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   Console console(options->console);

@@ -21,14 +21,14 @@
 namespace quintet::cli {
 namespace {
 
-struct Options {
+struct HelpOptions {
   std::vector<std::string> command;  // one word, or two
   bool man = false;
   bool list = false;
   std::optional<std::string> completion;
 };
 
-OptionTable declare(Options& options) {
+OptionTable declareHelp(HelpOptions& options) {
   std::vector<std::string> names;
   for (const Command& command : commands()) names.push_back(commandKey(command.name));
   OptionTable table("help", "Prints the help of a command, or the list of commands.");
@@ -115,13 +115,13 @@ std::string overviewText() {
 }
 
 OptionTable helpOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  HelpOptions options;
+  return declareHelp(options).withoutTargets();
 }
 
 int helpCommand(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return 0;
+  HelpOptions options;
+  if (!parse(declareHelp(options), arguments)) return 0;
   if (options.man + options.list + options.completion.has_value() > 1)
     throw UsageError("--man, --completion and --commands exclude each other");
   const bool named = !options.command.empty();

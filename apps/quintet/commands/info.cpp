@@ -9,14 +9,14 @@
 namespace quintet::cli {
 namespace {
 
-struct Options {
+struct InfoOptions {
   std::optional<std::string> file;
   scene::LoadOptions load;
   LoadTexts loadTexts;
   bool json = false;
 };
 
-OptionTable declare(Options& options) {
+OptionTable declareInfo(InfoOptions& options) {
   OptionTable table("info", "Describes the Vulkan devices, or a scene, an image or a film.");
   table.add({{.names = "FILE",
               .help = "A scene, an image or a film (.qfilm); without it, the devices",
@@ -40,13 +40,13 @@ OptionTable declare(Options& options) {
 }  // namespace
 
 OptionTable infoOptions() {
-  Options options;
-  return declare(options).withoutTargets();
+  InfoOptions options;
+  return declareInfo(options).withoutTargets();
 }
 
 int infoCommand(Arguments arguments) {
-  Options options;
-  if (!parse(declare(options), arguments)) return 0;
+  InfoOptions options;
+  if (!parse(declareInfo(options), arguments)) return 0;
   convertLoading(options.loadTexts, options.load);
   writeFile("-", options.file ? output::fileInfo(*options.file, options.json, options.load)
                               : output::devicesInfo(options.json));

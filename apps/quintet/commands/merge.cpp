@@ -22,7 +22,7 @@
 namespace quintet::cli {
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::filesystem::path> parts;
   output::OutputRequest output;
   ConsoleOptions console;
@@ -31,7 +31,7 @@ struct Options {
   std::size_t maxMemory = 0;  // as of scene::LoadOptions
 };
 
-OptionTable declare(Options& options, RenderTexts& texts) {
+OptionTable declareMerge(MergeOptions& options, RenderTexts& texts) {
   OptionTable table("merge", "Joins parts of a render, made by 'render --batches' on any number of machines.");
   table.add({{.names = "PART",
               .help = "Films (.qfilm): parts or checkpoints",
@@ -64,10 +64,10 @@ OptionTable declare(Options& options, RenderTexts& texts) {
   return table;
 }
 
-std::optional<Options> parseOptions(Arguments arguments) {
-  Options options;
+std::optional<MergeOptions> parseMerge(Arguments arguments) {
+  MergeOptions options;
   RenderTexts texts;
-  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+  if (!parse(declareMerge(options, texts), arguments)) return std::nullopt;
   if (options.parts.empty()) throw UsageError("no parts given; see 'quintet merge --help'");
   if (texts.output.empty()) throw UsageError("no output given (-o FILE); see 'quintet merge --help'");
   if (std::ranges::find(texts.layers, "list") != texts.layers.end())
@@ -86,14 +86,14 @@ std::optional<Options> parseOptions(Arguments arguments) {
 }  // namespace
 
 OptionTable mergeOptions() {
-  Options options;
+  MergeOptions options;
   RenderTexts texts;
-  return declare(options, texts).withoutTargets();
+  return declareMerge(options, texts).withoutTargets();
 }
 
 int mergeCommand(Arguments arguments) {
   const Stopwatch clock;
-  const std::optional<Options> options = parseOptions(arguments);
+  const std::optional<MergeOptions> options = parseMerge(arguments);
   if (!options) return 0;
   Console console(options->console);
   job::RenderResult result = job::merge(options->parts, console, commandLine("merge", arguments), options->maxMemory);

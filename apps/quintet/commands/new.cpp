@@ -12,7 +12,7 @@
 namespace quintet::cli {
 namespace {
 
-OptionTable declare(program::NewProgramOptions& options) {
+OptionTable declareNew(program::NewProgramOptions& options) {
   OptionTable table("new", "Creates a program that renders at once: one file, or a folder.");
   table.add({{.names = "NAME",
               .help = "Name of the program; parent folders are created",
@@ -39,12 +39,12 @@ OptionTable declare(program::NewProgramOptions& options) {
 
 OptionTable newOptions() {
   program::NewProgramOptions options;
-  return declare(options).withoutTargets();
+  return declareNew(options).withoutTargets();
 }
 
 int newCommand(Arguments arguments) {
   program::NewProgramOptions options;
-  if (!parse(declare(options), arguments)) return 0;
+  if (!parse(declareNew(options), arguments)) return 0;
   if (options.name.empty()) throw UsageError("no name given; see 'quintet new --help'");
 
   const program::NewProgram created = program::planNewProgram(options);

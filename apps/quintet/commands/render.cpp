@@ -31,7 +31,7 @@
 namespace quintet::cli {
 namespace {
 
-OptionTable declare(RenderOptions& options, RenderTexts& texts) {
+OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
   OptionTable table("render", "Renders a scene with the path tracer, or with another program.");
   table.add({{.names = "SCENE",
               .help = "Scene file: .gltf, .glb or .scene.toml",
@@ -82,7 +82,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
 std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RenderOptions options;
   RenderTexts texts;
-  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+  if (!parse(declareRender(options, texts), arguments)) return std::nullopt;
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.programHelp || options.layerList) return options;
   if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
@@ -117,7 +117,7 @@ job::RenderRequest requestFor(const RenderOptions& options, const output::Output
 std::string programHelpText(const program::Program& program, std::string_view command) {
   const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(std::string::npos);
   const bool runs = command == "run";
-  std::string options = "Options: ";
+  std::string options = "RenderOptions: ";
   if (runs && program.accumulation == program::Accumulation::program) options += "--frames N; ";
   options += fmt::format("--set NAME=VALUE for parameters; {}--all-outputs and --aov NAMES for outputs.",
                          runs ? "--output NAME, " : "");
@@ -206,7 +206,7 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
 OptionTable renderOptions() {
   RenderOptions options;
   RenderTexts texts;
-  return declare(options, texts).withoutTargets();
+  return declareRender(options, texts).withoutTargets();
 }
 
 int renderCommand(Arguments arguments) {

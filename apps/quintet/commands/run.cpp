@@ -49,7 +49,7 @@ void convertFrameCount(const RenderTexts& texts, RunOptions& options) {
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
 }
 
-OptionTable declare(RunOptions& options, RenderTexts& texts) {
+OptionTable declareRun(RunOptions& options, RenderTexts& texts) {
   OptionTable table("run",
                     "Runs a program: a folder with program.toml, a file NAME.rt.glsl, or a built-in one by name.");
   table.redirectHelp(&options.programHelp);  // with a program, its help
@@ -103,7 +103,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   RunOptions options;
   RenderTexts texts;
   options.program.clear();
-  const OptionTable table = declare(options, texts);
+  const OptionTable table = declareRun(options, texts);
   parse(table, arguments);
   if (options.programHelp && options.program.empty()) {
     writeFile("-", helpText(table, helpWidth()));
@@ -248,7 +248,7 @@ class Watch {
 OptionTable runOptions() {
   RunOptions options;
   RenderTexts texts;
-  return declare(options, texts).withoutTargets();
+  return declareRun(options, texts).withoutTargets();
 }
 
 int runCommand(Arguments arguments) {
