@@ -42,7 +42,7 @@ FilmFile decodeFilm(std::span<const std::byte> bytes, const std::filesystem::pat
 
 // Replaces the file atomically (base/file.h): readers see either the old or the new file.
 void writeFilm(const std::filesystem::path& path, const FilmFile& file);
-// `maxMemory`: bytes of host memory that the file can request, with its own bytes; 0 means 80 % of the machine's memory.
+// FilmReader(path).read(maxMemory).
 FilmFile readFilm(const std::filesystem::path& path, std::size_t maxMemory = 0);
 
 }  // namespace quintet::render

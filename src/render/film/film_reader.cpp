@@ -47,10 +47,16 @@ class FilmInput {
       bytes_ = static_cast<std::uint64_t>(info.st_size);
       std::setvbuf(file_, nullptr, _IONBF, 0);  // reads are exact, so that a header costs no more than its bytes
     } else {  // a pipe has no length; missing files and folders get the error of readFile()
-      memory_ = readFile(path);
+      read_ = readFile(path);
+      memory_ = read_;
       bytes_ = memory_.size();
     }
-    hash_.add(bytes_ - std::min<std::uint64_t>(bytes_, kFilmHashBytes));  // all but the checksum itself
+    start();
+  }
+  // Of `bytes`, which must outlive it; `path` is used in messages only.
+  FilmInput(std::span<const std::byte> bytes, const std::filesystem::path& path)
+      : path_(path), memory_(bytes), bytes_(bytes.size()) {
+    start();
   }
   ~FilmInput() {
     if (file_) std::fclose(file_);
@@ -86,13 +92,15 @@ class FilmInput {
   }
 
  private:
+  void start() { hash_.add(bytes_ - std::min<std::uint64_t>(bytes_, kFilmHashBytes)); }  // all but the checksum itself
   [[noreturn]] void fail(int code) const {
     throw FileError(path_, "cannot be read: " + std::generic_category().message(code));
   }
 
   const std::filesystem::path& path_;
   std::FILE* file_ = nullptr;
-  std::vector<std::byte> memory_;
+  std::vector<std::byte> read_;
+  std::span<const std::byte> memory_;  // the content, unless it is read from file_
   std::uint64_t bytes_ = 0, position_ = 0;
   Hasher hash_;
 };
@@ -146,7 +154,11 @@ bool useBlock(const FilmBlock& block) {
 }  // namespace
 
 struct FilmReader::Impl {
-  explicit Impl(const std::filesystem::path& file) : path(file), input(path) {
+  explicit Impl(const std::filesystem::path& file) : path(file), input(path) { readHeader(); }
+  Impl(std::span<const std::byte> bytes, const std::filesystem::path& file) : path(file), input(bytes, path) {
+    readHeader();
+  }
+  void readHeader() {
     std::vector<std::byte> start(std::min<std::uint64_t>(input.bytes(), kFilmPrefixBytes));
     input.read(start);
     prefix = checkedFilmPrefix(start, input.bytes(), path);
@@ -233,8 +245,7 @@ struct FilmReader::Impl {
     return {std::as_writable_bytes(std::span(values)), count * sizeof(T), sizeof(T) * group, use};
   }
 
-  FilmFile read(std::size_t maxMemory) {
-    MemoryBudget budget(path, maxMemory);
+  FilmFile read(MemoryBudget& budget) {
     FilmFile& file = header.file;
     FilmState& film = file.film;
     const std::size_t pixels = film.pixelCount();
@@ -284,6 +295,8 @@ struct FilmReader::Impl {
 };
 
 FilmReader::FilmReader(const std::filesystem::path& path) : impl_(std::make_unique<Impl>(path)) {}
+FilmReader::FilmReader(std::span<const std::byte> bytes, const std::filesystem::path& file)
+    : impl_(std::make_unique<Impl>(bytes, file)) {}
 FilmReader::~FilmReader() = default;
 
 const FilmFile& FilmReader::header() const { return impl_->header.file; }
@@ -304,8 +317,13 @@ bool FilmReader::hasArraysOf(const FilmState& film) const {
 }
 
 FilmFile FilmReader::read(std::size_t maxMemory) {
+  MemoryBudget budget(impl_->path, maxMemory);
+  return read(budget);
+}
+
+FilmFile FilmReader::read(MemoryBudget& budget) {
   FilmFile file;
-  impl_->explained([&] { file = impl_->read(maxMemory); });
+  impl_->explained([&] { file = impl_->read(budget); });
   impl_->requireChecksum();
   return file;
 }

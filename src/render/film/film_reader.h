@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
+#include "base/memory_budget.h"
 #include "render/film/film_content.h"
 
 namespace quintet::render {
@@ -18,6 +20,8 @@ class FilmReader {
   // Opens the file and reads its header. Throws FileError for a file that is not a film file, has a different version or
   // the wrong length, or whose header is damaged. A damaged payload is not noticed yet.
   explicit FilmReader(const std::filesystem::path& path);
+  // The same for the content of a file, which must outlive the reader; `file` is used in messages only.
+  FilmReader(std::span<const std::byte> bytes, const std::filesystem::path& file);
   ~FilmReader();
   FilmReader(const FilmReader&) = delete;
   FilmReader& operator=(const FilmReader&) = delete;
@@ -29,8 +33,9 @@ class FilmReader {
 
   // Each of these reads the rest of the file, so only one of them can be called, once. They throw FileError for a damaged
   // file, whose checksum they verify.
-  // The whole film, as readFilm() returns it. Its arrays count in `maxMemory`: see readFilm.
+  // The whole film. `maxMemory`: bytes of host memory that its arrays can request; 0 means 80 % of the machine's memory.
   FilmFile read(std::size_t maxMemory = 0);
+  FilmFile read(MemoryBudget&);
   // Merges the film into `film`: like mergeFilm(film, readFilm(path)), but this film is never in memory. Asserts
   // hasArraysOf(film). Throws UsageError as mergeFilm() does; after an exception, `film` is invalid.
   void addTo(FilmState& film);

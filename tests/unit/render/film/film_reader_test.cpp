@@ -82,7 +82,7 @@ class FilmReaderTest : public testing::Test {
   const quintet::test::TempFolder folder_;
 };
 
-TEST_F(FilmReaderTest, ReadsWhatReadFilmReads) {
+TEST_F(FilmReaderTest, ReadsWhatWasWritten) {
   const auto path = write("a.qfilm", partOf({0, 8}));
   EXPECT_EQ(encodeFilm(FilmReader(path).read()), readFile(path));
   EXPECT_EQ(FilmReader(path).fileBytes(), std::filesystem::file_size(path));
