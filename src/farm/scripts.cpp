@@ -119,11 +119,12 @@ void writePlan(const Plan& plan, const ScriptOptions& options, bool overwrite) {
     }
     if (id != planId(plan)) throw FileError(file, "is a different plan", Remedy::overwrite);
   }
+  const std::vector<std::pair<std::string, std::string>> texts = scripts(plan, options);
   for (const std::filesystem::path& folder : planFolders(plan)) {
     std::filesystem::create_directories(folder, failed);
     if (failed) throw FileError(folder, "cannot be created: " + failed.message());
   }
-  for (const auto& [name, text] : scripts(plan, options)) {
+  for (const auto& [name, text] : texts) {
     writeFile(plan.folder / name, text);
     if (name.ends_with(".sh")) std::filesystem::permissions(plan.folder / name, std::filesystem::perms(0755), failed);
   }

@@ -236,7 +236,7 @@ TEST_F(Farm, RejectsWrongPlans) {
   const auto expectRejected = [&](const std::vector<std::string>& more, int status,
                                   const std::vector<std::string>& text) {
     expectError(plan(more), status, text);
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "farm/plan.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "farm"));
   };
   expectRejected({"--spp", "16"}, 2, {"--parts"});
   expectRejected({"--spp", "16", "--parts", "5"}, 2, {"5 parts", "4 batches"});

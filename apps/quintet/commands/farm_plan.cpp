@@ -207,10 +207,15 @@ int farmPlanCommand(Arguments arguments) {
   options.scripts.tasks = parseInteger("--tasks", options.tasks, 1, 4e6).value_or(farm::kDefaultTasks);
   options.scripts.retries = static_cast<unsigned>(parseInteger("--retries", options.retries, 0, 1000).value_or(2));
   std::error_code failed;
-  std::filesystem::create_directories(plan.folder, failed);
+  const bool isNew = std::filesystem::create_directories(plan.folder, failed);
   if (failed) throw FileError(plan.folder, "cannot be created: " + failed.message());
-  describeRender(plan, options.render, frames);
-  farm::writePlan(plan, options.scripts, options.force);
+  try {
+    describeRender(plan, options.render, frames);
+    farm::writePlan(plan, options.scripts, options.force);
+  } catch (...) {
+    if (isNew) std::filesystem::remove(plan.folder, failed);  // if it is empty
+    throw;
+  }
   if (options.json) writeFile("-", summaryJson(plan, options.scripts));
   if (!options.quiet) printMessage(summary(plan, options.scripts));
   return 0;
