@@ -465,6 +465,18 @@ TEST_F(SessionTest, PicksWhatIsVisible) {
   EXPECT_TRUE(test::equalSums(sums(*session), before));
 }
 
+// A surface close to the camera, and a lens: picking uses its center.
+TEST_F(SessionTest, PicksThroughTheCenterOfTheLens) {
+  const auto session = makeSession(request());
+  session->apply(SetCamera{{.lookFrom = vec3(0.1f, 0.1f, 1.2f), .lookAt = vec3(0.1f, 0.1f, 0)}});
+  const std::optional<Pick> pinhole = session->pick({20, 12});
+  session->apply(SetLens{.apertureRadius = 0.1f, .focusDistance = 5.0f});
+  const std::optional<Pick> lens = session->pick({20, 12});
+  ASSERT_TRUE(pinhole && lens);
+  EXPECT_NEAR(pinhole->distance, 0.2f, 1e-2f) << "the front of the cube of 2 m";
+  EXPECT_LT(glm::length(lens->position - pinhole->position), 1e-5f);
+}
+
 // The path tracer has two ray types and the lesson one, of a program that intersects the boxes itself.
 TEST_F(SessionTest, PicksSolidsAndBoxes) {
   writeFile(folder_ / "a.scene.toml",
@@ -489,6 +501,25 @@ TEST_F(SessionTest, PicksSolidsAndBoxes) {
   EXPECT_NEAR(picked->position.z, 1, 1e-4f);
   EXPECT_EQ(picked->primitive, 1u);
   EXPECT_TRUE(picked->front);
+  // Seen obliquely, the pixel shows another face; the box is not in the middle of its axes.
+  lesson->apply(SetCamera{{.lookFrom = vec3(6, 2.5f, 4), .lookAt = vec3(0.9f, 0.3f, 0.2f)}});
+  const scene::Camera view = lesson->camera();
+  const vec3 eye(6, 2.5f, 4);
+  for (const uvec2 pixel : {uvec2(20, 12), uvec2(15, 12), uvec2(22, 9)}) {
+    const std::optional<Pick> side = lesson->pick(pixel);
+    ASSERT_TRUE(side);
+    const vec2 plane = std::tan(0.5f * view.verticalFov) / 24.0f * vec2(2, -2) * (vec2(pixel) + 0.5f - vec2(20, 12));
+    const vec3 d = vec3(view.worldFromCamera * vec4(plane, -1.0f, 0.0f));
+    float entry = 0, exit = 1e30f;  // the slabs of the box [-1, 1]³
+    for (int k = 0; k < 3; ++k) {
+      const float a = (-1 - eye[k]) / d[k], b = (1 - eye[k]) / d[k];
+      entry = std::max(entry, std::min(a, b)), exit = std::min(exit, std::max(a, b));
+    }
+    ASSERT_LT(entry, exit);
+    EXPECT_LT(glm::length(side->position - (eye + entry * d)), 1e-4f) << pixel.x;
+  }
+  lesson->apply(SetCamera{{.lookFrom = vec3(0, 0, 9), .lookAt = vec3(0, 0, 0)}});
+  lesson->refine();
   const std::vector<std::byte> image = lesson->result().film->image(0).data;
   lesson->pick({20, 12});
   lesson->apply(SetSamples{2});
