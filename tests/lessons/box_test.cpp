@@ -81,6 +81,7 @@ TEST(LessonBox, ShowsTextureCoordinates) {
 }
 TEST(LessonBox, ShowsTheInside) {
   expectBoxes({-1.4, 0.3, 0.1}, 1, [](const BoxHit& h) { return 0.5 + 0.5 * h.normal; });
+  expectBoxes({-1.4, 0.3, 0.1}, 2, [](const BoxHit& h) { return dvec3(h.texCoord, 0); });
 }
 
 // The shaded checkerboard, without the borders of its fields.
@@ -302,6 +303,18 @@ TEST(LessonCsgTree, CombinesFiveLeavesWithTheirMaterials) {
       2e-4, 0.3);
   for (const int count : leaves) EXPECT_GT(count, 8);
   EXPECT_GT(shadowed, 8);
+}
+
+TEST(LessonCsgTree, UsesTheCenterOfTheLens) {
+  LessonOptions options;
+  options.camera = lessonScene("14_csg_tree").cameras.front();
+  const LessonImage pinhole = renderLesson("14_csg_tree", options);
+  options.camera->apertureRadius = 0.5f;
+  const LessonImage lens = renderLesson("14_csg_tree", options);
+  int different = 0;  // up to rounding, which decides at edges
+  for (std::uint32_t y = 0; y < lens.height; ++y)
+    for (std::uint32_t x = 0; x < lens.width; ++x) different += glm::length(lens.at(x, y) - pinhole.at(x, y)) > 1e-3f;
+  EXPECT_LT(different, 5);
 }
 
 }  // namespace

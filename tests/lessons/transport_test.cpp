@@ -102,18 +102,55 @@ dvec3 underTheSky(const std::vector<WorldTriangle>& triangles, std::uint32_t x, 
   return albedo[hit.instance] / glm::pi<double>() * sum;
 }
 
-std::vector<dvec3> skyReference() {
-  const std::vector<WorldTriangle> triangles = worldTriangles(lessonScene("23_monte_carlo"));
+std::vector<dvec3> skyReference(const scene::Scene& scene) {
+  const std::vector<WorldTriangle> triangles = worldTriangles(scene);
   return hostBlocks(kTransportWidth, kTransportHeight, [&](std::uint32_t x, std::uint32_t y, HostRandom& random) {
     return underTheSky(triangles, x, y, random);
   });
 }
 
 TEST(LessonSky, BothDensitiesGiveTheIntegral) {
-  const std::vector<dvec3> reference = skyReference();
+  const std::vector<dvec3> reference = skyReference(lessonScene("23_monte_carlo"));
   expectBlocks(renderTransport("23_monte_carlo", 8, {{"samples", "64"}}), reference);
   for (const char* method : {"0", "1"})
     expectBlocks(renderTransport("24_cosine_sampling", 8, {{"samples", "64"}, {"method", method}}), reference);
+}
+
+// A sloping floor below a plate and beside a wall that hides half of the sky: directions have all azimuths and heights with
+// their density.
+TEST(LessonSky, DirectionsSurroundTheNormal) {
+  const auto quadOf = [](const dvec3& corner, const dvec3& a, const dvec3& b) {
+    scene::Geometry g;
+    for (const dvec3& p : {corner, corner + a, corner + a + b, corner + b}) g.positions.emplace_back(vec3(p));
+    g.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return g;
+  };
+  for (const double turn : {0.4, 2.0}) {
+    SCOPED_TRACE(turn);
+    const dvec3 up = glm::normalize(dvec3(0.25, 1, 0.3)), side = glm::normalize(glm::cross(up, dvec3(0, 0, 1)));
+    const dvec3 forward = glm::cross(side, up);
+    const dvec3 toWall = std::cos(turn) * side + std::sin(turn) * forward, along = glm::cross(up, toWall);
+    scene::Scene scene;
+    for (const scene::Geometry& g : {quadOf(-40.0 * (side + forward), 80.0 * side, 80.0 * forward),
+                                     quadOf(12.0 * toWall - 200.0 * along, 400.0 * along, 300.0 * up),
+                                     quadOf(2.5 * up - 1.0 * (side + forward), 2.0 * side, 2.0 * forward)}) {
+      scene.instances.emplace_back().mesh = static_cast<int>(scene.meshes.size());
+      scene.meshes.emplace_back().geometries.push_back(g);
+    }
+    const std::vector<dvec3> reference = skyReference(scene);
+    LessonOptions options;
+    options.width = kTransportWidth, options.height = kTransportHeight;
+    options.scene = scene;
+    options.frames = 8;
+    BlockLimits limits;
+    limits.relative = 0.02;
+    options.set = {{"samples", "128"}};
+    expectBlocks(renderLesson("23_monte_carlo", options), reference, limits);
+    for (const char* method : {"0", "1"}) {
+      options.set = {{"samples", "128"}, {"method", method}};
+      expectBlocks(renderLesson("24_cosine_sampling", options), reference, limits);
+    }
+  }
 }
 
 double noiseOf(const LessonImage& image, const LessonImage& reference) {

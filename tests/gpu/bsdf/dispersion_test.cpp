@@ -60,12 +60,20 @@ class BsdfDispersion : public BsdfTest {
 
 // Abbe number 55 at ior 1.5: n_F - n_C = 0.5 / 55.
 TEST_F(BsdfDispersion, IndicesFollowTheAbbeNumber) {
-  const float dispersion = 20.0f / 55.0f;
-  const auto index = [&](std::uint32_t channel) { return ask({{0, 0, 1}, 0.2f, dispersion, channel, 1, 0}).ior; };
-  EXPECT_NEAR(index(1), 1.5f, 1e-6f);
-  EXPECT_NEAR(index(2) - index(0), 0.5f / 55.0f, 1e-6f);
-  EXPECT_NEAR(index(2) + index(0), 3.0f, 1e-6f);
-  EXPECT_EQ(index(2), index(2 | kOnly));
+  for (const float abbe : {55.0f, 150.0f}) {
+    const auto index = [&](std::uint32_t channel) { return ask({{0, 0, 1}, 0.2f, 20.0f / abbe, channel, 1, 0}).ior; };
+    EXPECT_NEAR(index(1), 1.5f, 1e-6f);
+    EXPECT_NEAR(index(2) - index(0), 0.5f / abbe, 1e-6f);
+    EXPECT_NEAR(index(2) + index(0), 3.0f, 1e-6f);
+    EXPECT_EQ(index(2), index(2 | kOnly));
+  }
+}
+
+TEST_F(BsdfDispersion, AffectsMaterialsThatTransmitLittle) {
+  std::string body = kDisperse;
+  body.replace(body.find("0.7, 1.5"), 3, "0.1");
+  const std::vector<DispersionQuery> query{{{0, 0, 1}, 0.2f, 1.0f, 2, 1, 0}};
+  EXPECT_NEAR(runQueries<DispersionAnswer>(body, query)[0].ior, 1.5f + 0.025f * 0.5f, 1e-6f);
 }
 
 TEST_F(BsdfDispersion, MeanOverTheChannelsIsUnbiased) {

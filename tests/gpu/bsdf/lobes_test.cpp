@@ -260,6 +260,79 @@ TEST_F(BsdfLobes, SmoothLobesAreReported) {
             (std::vector<std::uint32_t>{0, 0, 1, 1}));
 }
 
+// The base color of a dielectric scales its diffuse reflection only, so the diffuse part is what the base color adds.
+TEST_F(BsdfLobes, TheDiffusePartIsWhatTheBaseColorAdds) {
+  struct Out {
+    vec3 diffuse, added;
+  };
+  const std::string body = kBsdfPrelude + R"(
+    struct Out_ { vec3 diffuse; vec3 added; };
+    #define In Case
+    #define Out Out_
+    Out run(uint index, In c) {
+      const vec3 wi = normalize(vec3(-0.5, 0.3, 0.6));
+      Case black = c;
+      black.baseColor = vec3(0.0);
+      Bsdf b = makeBsdfOf(c);
+      return Out(bsdfEvalDiffuse(b, wi), bsdfEval(b, c.wo, wi) - bsdfEval(makeBsdfOf(black), c.wo, wi));
+    }
+  )";
+  BsdfCase plain;
+  plain.wo = directionAt(0.4f);
+  plain.alpha = 0.3f;
+  plain.baseColor = {0.9f, 0.5f, 0.2f};
+  BsdfCase coat = plain, sheen = plain, both = plain;
+  for (BsdfCase* c : {&coat, &both}) c->clearcoat = 0.8f, c->clearcoatAlpha = 0.2f;
+  for (BsdfCase* c : {&sheen, &both}) c->sheenColor = vec3(0.7f, 0.9f, 0.5f), c->sheenAlpha = 0.3f;
+  for (const Out& out : runCases<Out>(body, {plain, coat, sheen, both}, 4)) {
+    EXPECT_GT(out.diffuse.x, 0.01f);
+    EXPECT_LT(relativeDifference(out.diffuse, out.added), 1e-5);
+  }
+}
+
+// Refraction between nearly equal indices, and by nearly smooth surfaces, is a delta: its half vector has no digits.
+TEST_F(BsdfLobes, NearlyEqualIndicesAreADelta) {
+  const auto refractsSharply = [](float ior, float alpha) {
+    BsdfCase c;
+    c.wo = directionAt(0.7f);
+    c.transmission = 1.0f;
+    c.ior = ior;
+    c.alpha = alpha;
+    std::size_t refracted = 0, sharp = 0;
+    for (const BsdfSampleOut& s : sample(c, 500))
+      if (s.valid && s.transmitted) ++refracted, sharp += s.delta;
+    EXPECT_GT(refracted, 300u);
+    EXPECT_TRUE(sharp == 0 || sharp == refracted);
+    return sharp > 0;
+  };
+  EXPECT_TRUE(refractsSharply(1.005f, 0.5f));
+  EXPECT_TRUE(refractsSharply(1.015f, 6e-4f));  // 9e-6 < 1e-5
+  EXPECT_FALSE(refractsSharply(1.02f, 6e-4f));
+  EXPECT_FALSE(refractsSharply(1.02f, 0.5f));
+}
+
+// The cap of visible normals ends where the reflected direction is at the horizon (Eto and Tokuyoshi 2023, section 3).
+TEST_F(BsdfLobes, TheCapOfNormalsEndsAtTheHorizon) {
+  struct Query {
+    vec3 wo;
+    float alpha;
+  };
+  const std::string body = kBsdfPrelude + R"(
+    struct Query { vec3 wo; float alpha; };
+    #define In Query
+    #define Out vec3
+    Out run(uint index, In q) {
+      return reflect(-q.wo, ggxSampleVisible(q.wo, vec2(q.alpha), ggxBound(q.wo.z, q.alpha), vec2(1.0, 0.0)));
+    }
+  )";
+  std::vector<Query> queries;
+  for (const float cosine : {0.95f, 0.7f, 0.3f})
+    for (const float alpha : {0.2f, 0.5f, 0.9f}) queries.push_back({directionAt(cosine, 0.0f), alpha});
+  const auto answers = runQueries<vec3>(body, queries);
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    EXPECT_NEAR(answers[i].z, 0.0f, 2e-5f) << queries[i].wo.z << " " << queries[i].alpha;
+}
+
 // Millions of random materials and directions. Parameters are often at the ends of their ranges.
 TEST_F(BsdfLobes, NothingIsInvalid) {
   struct Out {

@@ -63,6 +63,20 @@ TEST_F(BsdfReference, RoughMaterials) {
 }
 
 // KHR_materials_ior with 0: the reflectance is specular · specularColor, in a lobe of the surface's roughness.
+// Films with small weights, over metal and dielectric with small weights.
+TEST_F(BsdfReference, FaintFilms) {
+  NamedCase named{"faint film", {}};
+  BsdfCase& c = named.material;
+  c.wo = directionAt(0.4f);
+  c.alpha = 0.3f;
+  c.baseColor = {0.9f, 0.5f, 0.2f};
+  c.specular = 0.2f;
+  c.iridescence = 0.2f, c.iridescenceThickness = 350.0f;
+  NamedCase mixed = named;
+  mixed.material.metallic = 0.2f, mixed.material.iridescence = 1.0f;
+  compare({named, mixed}, 2e-3, 2000);
+}
+
 TEST_F(BsdfReference, FullReflectance) {
   std::vector<NamedCase> cases;
   for (const float alpha : {0.1f, 0.4f, 1.0f})

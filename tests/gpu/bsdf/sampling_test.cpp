@@ -175,14 +175,17 @@ float integralOf(Case c, Bsdf b, int side, int ring, int sector) {
 #endif
 )";
 
-// A cell: (side · RINGS + ring) · SECTORS + sector.
+// A cell: (side · RINGS + ring) · SECTORS + sector; or 2 · RINGS · SECTORS for a sample that is rejected, because it is below
+// the horizon; plus 1 for a sample above it whose density is 0.
 const std::string kDraw = kLobes + R"(
 #define In Case
 #define Out uint
 Out run(uint index, In c) {
   Bsdf b = lobesOf(c);
   vec3 wi = sampleOf(b, c.wo, randomAt(index, 7u));
-  return pdfOf(b, c.wo, wi) > 0.0 ? cellOf(c, b, wi, randomAt(index, 8u).xy) : uint(2 * RINGS * SECTORS);
+  if (pdfOf(b, c.wo, wi) > 0.0) return cellOf(c, b, wi, randomAt(index, 8u).xy);
+  float height = LOBE == 4 ? min(wi.z, dot(wi, b.clearcoat.normal)) : LOBE == 3 ? abs(wi.z) : wi.z;
+  return uint(2 * RINGS * SECTORS) + uint(LOBE != 2 && height > 1e-3);
 }
 )";
 
@@ -227,8 +230,10 @@ class BsdfSampling : public BsdfTest {
     const auto integrals = runCases<float>(kIntegrateCells, {named.material}, 2 * kRings * kSectors, defines);
     const auto draws = runCases<std::uint32_t>(kDraw, {named.material}, kDraws, defines);
 
-    std::vector<double> observed(integrals.size() + 1, 0.0);
+    std::vector<double> observed(integrals.size() + 2, 0.0);
     for (const std::uint32_t cell : draws) observed.at(cell) += 1.0;
+    EXPECT_EQ(observed.back(), 0.0) << named.name << ": samples with the density 0";
+    observed.pop_back();
     const double integral = std::accumulate(integrals.begin(), integrals.end(), 0.0);
     const double accepted = 1.0 - observed.back() / kDraws;
     EXPECT_LE(integral, 1.0 + 2e-3) << named.name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/depth_map.h"
 
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -80,6 +81,34 @@ TEST_F(DepthMapTest, SupportsOrthographicCamerasAndLenses) {
   const DepthMap lens = depthOf("normals", [](scene::Camera& camera) { camera.apertureRadius = 0.5f; });
   EXPECT_NEAR(at(lens, 17, 6), 2.0f, 1e-4f) << "the lens is replaced by its center";
   EXPECT_NEAR(at(lens, 10, 13), 4.0f, 1e-4f);
+}
+
+// A plane that slopes in both directions, close to the camera, shows where the ray of each pixel is.
+TEST_F(DepthMapTest, HoldsTheDepthsOfPixelCenters) {
+  writeFile(folder_ / "walls.scene.toml", R"(
+[[mesh]]
+name = "slope"
+positions = [[-9, -9, -9.9], [9, -9, 4.5], [9, 9, 9.9], [-9, 9, -4.5]]
+indices = [[0, 1, 2], [0, 2, 3]]
+[[instance]]
+of = "slope"
+[[camera]]
+name = "pinhole"
+look_from = [0, 0, 0.2]
+look_at = [0, 0, 0]
+fov = 45
+)");
+  const DepthMap map = depthOf("normals");
+  const float half = std::tan(0.125f * 3.14159265f);
+  for (std::uint32_t y = 0; y < kSize.y; ++y)
+    for (std::uint32_t x = 0; x < kSize.x; ++x) {
+      const vec2 size(kSize), center = vec2(x, y) + 0.5f, p = half / size.y * vec2(2, -2) * (center - 0.5f * size);
+      // z = 0.8 x + 0.3 y meets z = 0.2 - d at x, y = p d.
+      EXPECT_NEAR(at(map, x, y), 0.2f / (1.0f + 0.8f * p.x + 0.3f * p.y), 1e-5f) << x << " " << y;
+    }
+  const DepthMap lens = depthOf("normals", [](scene::Camera& camera) { camera.apertureRadius = 0.05f; });
+  for (std::size_t i = 0; i < map.depths.size(); ++i)
+    EXPECT_NEAR(lens.depths[i], map.depths[i], 1e-5f) << "the lens is replaced by its center";
 }
 
 // The samples of a blurred image leave the scene at other times.

@@ -231,6 +231,42 @@ TEST(PixelExplainer, StatesTheNumbersInAbsorbingMedia) {
   EXPECT_GT(absorbed, 0) << "no light sample passes the glass";
 }
 
+// Left, the back of an unlit panel; right, the front of a panel that scatters light.
+TEST(PixelExplainer, StatesSidesAndUnlitSurfaces) {
+  quintet::test::SceneBuilder builder;
+  builder.add(quintet::test::quad({-2, -2, 0}, {0, 4, 0}, {2, 0, 0}), quintet::test::unlit(vec3(0.5f)));
+  builder.add(quintet::test::quad({0, -2, 0}, {2, 0, 0}, {0, 4, 0}), quintet::test::lambert(vec3(0.5f)));
+  builder.sky(vec3(1.0f)).camera(quintet::test::perspective({0, 0, 4}, {0, 0, 0}, 40.0f));
+  RenderRequest request = smallRequest();
+  request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
+  for (const bool left : {true, false}) {
+    const PixelExplanation e = explain(program::loadProgram("pathtracer"), {left ? 24 : 40, 24}, 0, request);
+    const auto surfaces = eventsOf(e, "surface"), shadings = eventsOf(e, "shading"), ends = eventsOf(e, "end");
+    ASSERT_FALSE(surfaces.empty() || shadings.empty());
+    EXPECT_EQ(surfaces[0]->text("side"), left ? "back" : "front");
+    EXPECT_EQ(!ends.empty() && ends[0]->text("reason") == "unlit surface", left);
+    EXPECT_EQ(shadings[0]->flag("unlit"), left);
+    EXPECT_EQ(shadings[0]->vector("baseColor"), vec3(0.5f));
+  }
+}
+
+// Without MIS and clamping, the numbers of a contribution are those of the path alone.
+TEST(PixelExplainer, StatesTheNumbersOfNaive) {
+  std::size_t contributions = 0;
+  for (std::uint32_t sample = 0; sample < 4; ++sample) {
+    const PixelExplanation e = explain(program::loadProgram("naive"), {32, 30}, sample);
+    for (const ExplainedEvent* event : eventsOf(e, "contribution")) {
+      EXPECT_EQ(event->find("unclamped"), nullptr);
+      ++contributions;
+    }
+    for (const ExplainedEvent* event : eventsOf(e, "emission")) {
+      EXPECT_EQ(event->number("bsdfPdf"), 0.0f);
+      EXPECT_EQ(event->number("misWeight"), 1.0f);
+    }
+  }
+  EXPECT_GT(contributions, 0u);
+}
+
 // A ray that skips the closest-hit shader still reports its hit.
 TEST(PixelExplainer, ReportsHitsOfShadowRays) {
   const program::Program program = program::loadProgram("ao");

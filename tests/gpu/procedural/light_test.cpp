@@ -297,6 +297,23 @@ TEST(SolidAlpha, TestsEachCrossingIndependently) {
   }
 }
 
+// Two balls of one set: the material of the first one is opaque, so its alpha has no effect. Solids have no vertex colors, in
+// contrast to the mesh beside them.
+TEST(SolidAlpha, OpaqueMaterialsIgnoreIt) {
+  SceneBuilder scene;
+  scene::Material m = unlit({2.0f, 1.0f, 0.5f}, 0.4f);
+  PrimitiveSet balls = solidsOf({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, moved(9, 0, 0))});
+  add(scene, balls, m);
+  m.alphaMode = scene::AlphaMode::blend;
+  scene.scene.meshes[0].primitiveSets[0].primitives[1].material = 1;
+  scene.scene.materials.push_back(m);
+  scene::Geometry colored = quad({20, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  colored.colors.assign(4, vec4(0.5f));
+  scene.add(colored, lambert(vec3(0.5f)));
+  scene.sky({0.5f, 0.25f, 4.0f}).camera(orthographic({0, 0, 5}, vec3(0.0f), 0.1f));
+  expectUniform(renderImage(scene, withParameters({}, 8)), vec4(2.0f, 1.0f, 0.5f, 1.0f));
+}
+
 TEST(SolidAlpha, AttenuatesShadowRays) {
   scene::Light lamp;
   lamp.type = scene::LightType::directional;

@@ -71,6 +71,25 @@ TEST(Instrument, ReportsNothingForBuiltInPrograms) {
   }
 }
 
+// Nested traces and callable shaders run as without the checks.
+TEST(Instrument, KeepsTheImageOfLessons) {
+  for (const char* name : {"lessons/07_mirror_recursion", "lessons/16_callable"}) {
+    const program::Program program = program::loadProgram(name);
+    const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+    render::DeviceScene device(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+    render::RenderSettings settings;
+    settings.width = settings.height = 16;
+    settings.parameters = program::ParameterValues(program.parameters);
+    const auto image = [&](bool instrument) {
+      settings.instrument = instrument;
+      render::Renderer renderer = makeRenderer(device, program, settings);
+      renderer.renderBatch(1);
+      return renderer.image().data;
+    };
+    EXPECT_EQ(image(true), image(false)) << name;
+  }
+}
+
 TEST(Instrument, ReportsRaysThatAreNotFinite) {
   const auto notes = notesOf(
       kCommon + instrumentedRayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) +

@@ -171,14 +171,18 @@ vec4 look(sampler2D image, vec2 st) { return texture(image, st); }
 )" + rayGeneration(R"(
   uint x = gl_LaunchIDEXT.x;
   gsnSetPixel(x == 0u ? look(photo, vec2(0.25)) : x == 1u ? look(photo, vec2(0.75, 0.25)) : x == 2u ? textureLod(photo, vec2(0.25, 0.75), 0.0)
-            : x == 3u ? texelFetch(photo, ivec2(1, 1), 0) : x == 4u ? vec4(textureSize(photo, 0), 0.0, 1.0) : texture(texture3, vec2(0.5)));)");
-  const LectureImage p = runLecture(text, oneSquare(), {.width = 6}, {{"small.png", smallImage()}});
+            : x == 3u ? texelFetch(photo, ivec2(1, 1), 0) : x == 4u ? vec4(textureSize(photo, 0), 0.0, 1.0) : x == 5u ? texture(texture3, vec2(0.5))
+            : x == 6u ? texelFetch(photo, ivec2(0), 0) : x == 7u ? texelFetch(photo, ivec2(2, 0), 0) : vec4(textureSize(texture3, 0), 0.0, 1.0));)");
+  const LectureImage p = runLecture(text, oneSquare(), {.width = 9}, {{"small.png", smallImage()}});
   EXPECT_EQ(p.at(0), vec4(0, 0, 1, 1));
   EXPECT_NEAR(p.at(1).x, 128.0f / 255.0f, 1e-3f);  // the byte itself, not decoded
   EXPECT_EQ(p.at(2), vec4(1, 0, 0, 1));
   EXPECT_EQ(p.at(3), vec4(0, 1, 0, 1));
   EXPECT_EQ(p.at(4), vec4(2, 2, 0, 1));
-  EXPECT_EQ(p.at(5), vec4(1));
+  EXPECT_EQ(p.at(5), vec4(1)) << "without an image";
+  EXPECT_EQ(p.at(6), vec4(0, 0, 1, 1));
+  EXPECT_EQ(p.at(7), vec4(0)) << "outside of the image";
+  EXPECT_EQ(p.at(8), vec4(1, 1, 0, 1)) << "without an image";
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "lecture_run.h"
 
 namespace quintet::test {
@@ -130,6 +132,37 @@ TEST(LectureNames, NormalMatrixAndBarycentrics) {
 }
 
 // Outside hit shaders, the first geometry of a mesh counts; indices out of range give zeros.
+// Of a closest hit behind a candidate that an any-hit shader rejects, in all parts of a triangle.
+TEST(LectureNames, BarycentricsBehindARejectedCandidate) {
+  scene::Scene scene;
+  scene::Geometry& g = scene.meshes.emplace_back().geometries.emplace_back();
+  const vec2 a(-0.5f, 0.1f), b(8.5f, -0.5f), c(1.5f, 7.0f);
+  g.positions = {vec3(a, 0), vec3(b, 0), vec3(c, 0)};
+  g.triangles = {{0, 1, 2}};
+  scene.instances.resize(2);
+  scene.instances[0].mesh = scene.instances[1].mesh = 0;
+  scene.instances[1].worldFromObject = glm::translate(mat4(1.0f), vec3(-0.4f, -0.3f, 1));  // in front
+  const LectureImage image =
+      runLecture(closestHit("payload.value = vec4(baryCoord, float(gl_InstanceID), 1.0);") +
+                     "void main() { /**** ANY-HIT SHADER ****/ if (gl_InstanceID == 1) ignoreIntersectionEXT; }\n",
+                 scene, {.width = 8, .height = 6});
+  int compared = 0;
+  vec3 largest(0.0f);
+  for (std::uint32_t x = 0; x < 8; ++x)
+    for (std::uint32_t row = 0; row < 6; ++row) {
+      const vec2 p = vec2(static_cast<float>(x) + 0.3f, static_cast<float>(row) + 0.2f) - a;
+      const glm::mat2 edges(b - a, c - a);
+      const vec2 expected = glm::inverse(edges) * p;
+      const vec3 weights(1.0f - expected.x - expected.y, expected);
+      if (std::min({weights.x, weights.y, weights.z}) < 1e-3f) continue;
+      EXPECT_LT(glm::length(image.at(x, row) - vec4(expected, 0, 1)), 1e-5f) << x << " " << row;
+      largest = glm::max(largest, weights);
+      ++compared;
+    }
+  EXPECT_GT(compared, 15);
+  EXPECT_GT(std::min({largest.x, largest.y, largest.z}), 0.7f);
+}
+
 TEST(LectureNames, RayGenerationReadsMeshData) {
   const std::string text = R"(void main() { /**** RAY GENERATION SHADER ****/
   int x = int(gl_LaunchIDEXT.x);

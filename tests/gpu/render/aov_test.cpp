@@ -205,6 +205,9 @@ TEST(Aov, DescribesTheFirstSurface) {
     half.uvs[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.add(half, lambert(x < 0 ? vec3(0.8f, 0, 0) : vec3(0, 0.6f, 0)));
   }
+  // Behind the camera, so that the scene has any-hit shaders.
+  scene.add(quad({-1, -1, 5}, {2, 0, 0}, {0, 2, 0}), unlit(vec3(0.5f), 0.5f));
+  scene.scene.materials.back().alphaMode = scene::AlphaMode::blend;
   scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   ImageOptions options;
@@ -214,7 +217,8 @@ TEST(Aov, DescribesTheFirstSurface) {
   const auto where = [](std::uint32_t x, std::uint32_t y) {
     return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16);
   };
-  for (const uvec2 p : {uvec2(2, 12), uvec2(13, 9), uvec2(7, 15)}) {
+  for (const uvec2 p :
+       {uvec2(2, 12), uvec2(13, 9), uvec2(7, 15), uvec2(9, 14), uvec2(1, 7), uvec2(14, 7), uvec2(1, 14)}) {
     const vec2 at = where(p.x, p.y);
     const bool left = at.x < 0;
     EXPECT_NEAR(layers.at("position", p.x, p.y)[0], at.x, 1e-5);
@@ -231,14 +235,19 @@ TEST(Aov, DescribesTheFirstSurface) {
     EXPECT_EQ(layers.at("primitive_id", p.x, p.y)[0], uv.x > uv.y ? 1.0f : 2.0f)
         << "the two triangles on either side of the diagonal";
     EXPECT_EQ(layers.at("motion", p.x, p.y)[0], 0.0f);
+    for (const char* center : {"position", "depth", "distance", "uv", "instance_id", "material_id", "primitive_id"})
+      EXPECT_EQ(layers.at(center, p.x, p.y)[3], 1.0f) << center;
     const shared::CoverageSlot* slots =
         &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
     EXPECT_EQ(slots[0].id, shared::kCoverageId + (left ? 0 : 1));
     EXPECT_EQ(slots[0].samples, 8u);
   }
   EXPECT_EQ(layers.at("depth", 3, 1)[0], 1e10f);
-  for (const char* id : {"instance_id", "material_id", "primitive_id", "uv"})
-    EXPECT_EQ(layers.at(id, 3, 1)[0], 0.0f) << id;
+  EXPECT_EQ(layers.at("distance", 3, 1)[0], 1e10f);
+  for (const char* id : {"instance_id", "material_id", "primitive_id", "uv", "position", "motion", "albedo", "normal"})
+    for (const std::size_t c : {0u, 1u, 2u}) EXPECT_EQ(layers.at(id, 3, 1)[c], 0.0f) << id;
+  for (const char* center : {"position", "depth", "distance", "uv", "instance_id", "material_id", "primitive_id"})
+    EXPECT_EQ(layers.at(center, 3, 1)[3], 0.0f) << center;
   EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
   // At the seam, colors are averaged and ids are not.
   const float red = layers.at("albedo", 8, 12)[0];

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "deformed_scene.h"
 #include "harness.h"
@@ -132,6 +133,35 @@ TEST(Deformation, RepairsAsTheHost) {
   options.normals = options.tangents = options.targetNormals = options.targetTangents = false;
   scene.addMesh(options);
   expectHostVertices(scene.build());
+}
+
+// Vectors along one axis, and those whose square overflows or underflows. The others stay as they are.
+TEST(Deformation, NormalizesTinyAndHugeDirections) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const std::vector<vec3> vectors{{3, 0, 0},
+                                  {0, 3, 0},
+                                  {0, 0, -3},
+                                  {1e30f, -2e30f, 1e25f},
+                                  {-1e-30f, 3e-30f, 2e-30f},
+                                  {0, 0, 0},
+                                  {0, kInf, 0},
+                                  {1, 0, std::numeric_limits<float>::quiet_NaN()}};
+  const auto answers = runCompute<vec4>(R"(
+    #include <quintet/passes/deform.glsl>
+    #define In vec3
+    #define Out vec4
+    Out run(uint index, In v) { return vec4(normalizeDirection(v) ? 1.0 : 0.0, v); }
+  )",
+                                        vectors, vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const vec3 got(answers[i].y, answers[i].z, answers[i].w);
+    EXPECT_EQ(answers[i].x, i < 5 ? 1.0f : 0.0f) << i;
+    if (i < 5) {
+      EXPECT_LT(glm::length(glm::dvec3(got) - glm::normalize(glm::dvec3(vectors[i]))), 1e-6) << i;
+    } else if (i == 5) {
+      EXPECT_EQ(got, vec3(0.0f));
+    }
+  }
 }
 
 // Joints with a scale of 0 move all vertices onto a line. The rounding of the device decides which of the perpendicular

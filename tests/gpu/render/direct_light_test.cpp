@@ -120,6 +120,36 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(std::array{"Point", "Spot", "Directional"}[static_cast<std::size_t>(test.param)]);
     });
 
+// Light and surfaces of a single channel, and dim lights: no test of "is there any light" may ask a single channel, or for
+// more than 0.
+TEST(PunctualLights, ShineInASingleChannel) {
+  for (int channel = 0; channel < 3; ++channel) {
+    SCOPED_TRACE(channel);
+    vec3 one(0.0f);
+    one[channel] = 1.0f;
+    for (const auto type : {scene::LightType::point, scene::LightType::directional}) {
+      scene::Light light = lampAt(type);
+      light.intensity = 0.125f * one;
+      SceneBuilder scene = plane();
+      scene.light(light);
+      expectPixels(
+          renderImage(scene, batches(4)), [&](vec2 pixel) { return reflected(light, pointOf(pixel, 8)); }, kPunctual);
+    }
+    // Inside an emitting sphere that reflects one channel: the light is found by samples of the light and of directions.
+    scene::Material m = lambert(0.5f * one);
+    m.emissive = 0.125f * one;
+    SceneBuilder scene;
+    scene.add(sphere(vec3(0.0f), 1.0f, 2), m).camera(perspective(vec3(0.1f), vec3(1.0f), 90.0f));
+    ImageOptions options = batches(8);
+    options.set = {"bounces=2"};
+    expectUniform(renderImage(scene, options), vec4(0.125f * 1.75f * one, 1.0f), {.error = 0.01});
+    // A constant sky.
+    SceneBuilder open = plane();
+    open.sky(0.125f * one);
+    expectUniform(renderImage(open, batches(8)), vec4(0.125f * kLitAlbedo * one, 1.0f), {.error = 0.01});
+  }
+}
+
 // A sun below the horizon of the plane, and a lamp behind it.
 TEST(PunctualLights, DoNotShineThroughSurfaces) {
   scene::Light lamp = lampAt(scene::LightType::point), sun = lampAt(scene::LightType::directional);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "program/load.h"
 #include "rendered_image.h"
 
 namespace quintet::test {
@@ -45,7 +46,7 @@ Arrival arrivalOf(int channel) {
 }
 
 // A narrow emitter below the wedge at the place of one channel is seen in this channel only.
-TEST(DispersionRender, WedgeSeparatesTheChannels) {
+void expectSeparation(const std::string& program) {
   for (int channel = 0; channel < 3; ++channel) {
     SCOPED_TRACE(channel);
     const Arrival arrival = arrivalOf(channel);
@@ -59,10 +60,14 @@ TEST(DispersionRender, WedgeSeparatesTheChannels) {
     vec4 expected(0, 0, 0, 1);
     expected[channel] = static_cast<float>(2.0 * arrival.passed);
     ImageOptions options;
+    options.program = program::loadProgram(program);
     options.set = {"bounces=2"};
     expectUniform(renderImage(scene, options), expected, {.error = 0.05, .rounding = 1e-3});
   }
 }
+
+TEST(DispersionRender, WedgeSeparatesTheChannels) { expectSeparation("pathtracer"); }
+TEST(DispersionRender, WedgeSeparatesTheChannelsOfNaive) { expectSeparation("naive"); }
 
 // A white sky stays white in each channel: the wedge absorbs nothing. A thin wall has no dispersion.
 TEST(DispersionRender, GlassIsInvisibleInAFurnace) {

@@ -325,23 +325,26 @@ TEST_F(FilmTest, PartsOfBatchesAddUpToTheSameBytes) {
   EXPECT_TRUE(sameBytes(joined, whole.saveFilm())) << "takeFilm() discards the samples";
 }
 
+// Two tiles, which extend beyond the image, side by side and one above the other.
 TEST_F(FilmTest, CountsBatchesPerCell) {
-  render::Renderer r = renderer({});
-  r.renderBatch();
-  ASSERT_EQ(render::tileCount(r.film().region()), 2u);
-  const std::vector<std::uint32_t> limits{1, 3, 2, 0};
-  while (r.film().counts().cellBatches != std::vector<std::uint32_t>{1, 3, 2, 1}) ASSERT_TRUE(r.renderCells(limits));
-  const io::Image color = r.image();
-  for (std::uint32_t y = 0; y < 5; ++y)
-    for (std::uint32_t x = 0; x < 37; ++x) {
-      const std::uint32_t batches = std::array{1, 3, 2, 1}[2 * (x / 32) + (x + y) % 2];
-      ASSERT_NEAR(color.pixel<float>(x, y)[1], meanOf(4 * batches, [](double s) { return s * s; }), 1e-4)
-          << x << ", " << y;
-    }
-  std::uint64_t rays = 0;
-  for (std::uint32_t y = 0; y < 5; ++y)
-    for (std::uint32_t x = 0; x < 37; ++x) rays += 4u * std::array{1u, 3u, 2u, 1u}[2 * (x / 32) + (x + y) % 2];
-  EXPECT_EQ(r.rays().rays, rays);
+  for (const uvec2 size : {uvec2(37, 5), uvec2(5, 37)}) {
+    options.width = size.x, options.height = size.y;
+    render::Renderer r = renderer({});
+    r.renderBatch();
+    ASSERT_EQ(render::tileCount(r.film().region()), 2u);
+    const std::vector<std::uint32_t> limits{1, 3, 2, 0};
+    while (r.film().counts().cellBatches != std::vector<std::uint32_t>{1, 3, 2, 1}) ASSERT_TRUE(r.renderCells(limits));
+    const io::Image color = r.image();
+    std::uint64_t rays = 0;
+    for (std::uint32_t y = 0; y < size.y; ++y)
+      for (std::uint32_t x = 0; x < size.x; ++x) {
+        const std::uint32_t batches = std::array{1u, 3u, 2u, 1u}[2 * (std::max(x, y) / 32) + (x + y) % 2];
+        ASSERT_NEAR(color.pixel<float>(x, y)[1], meanOf(4 * batches, [](double s) { return s * s; }), 1e-4)
+            << x << ", " << y;
+        rays += 4 * batches;
+      }
+    EXPECT_EQ(r.rays().rays, rays);
+  }
 }
 
 // The same plan gives the same bytes for all launch sizes and orders of cells.

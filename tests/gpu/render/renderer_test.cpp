@@ -142,6 +142,19 @@ TEST(Renderer, RendersDifferentBytesWithADifferentSeed) {
   EXPECT_NE(shared.render(settings).data, first.data);
 }
 
+// A launch covers all samples of a batch, or one sample of one row.
+TEST(Renderer, RendersTheSameBytesWithAllLaunchSizesForEachProgram) {
+  for (const char* name : {"ao", "naive", "normals"}) {
+    Shared shared;
+    shared.program = program::loadProgram(name);
+    shared.settings.parameters = program::ParameterValues(shared.program.parameters);
+    const io::Image whole = shared.render(shared.settings, {4, 3});
+    render::RenderSettings settings = shared.settings;
+    settings.launchSeconds = 1e-9;
+    EXPECT_EQ(shared.render(settings, {4, 3}).data, whole.data) << name;
+  }
+}
+
 // The paths are the same, because random numbers do not depend on which code is present. Only a compiler can round
 // differently (lavapipe: 1.5e-8).
 void expectSame(const RenderedImage& lean, const RenderedImage& full) {
@@ -288,7 +301,7 @@ TEST(Renderer, CountsSamplesAndStopsOnRequest) {
 TEST(BuiltInProgram, NormalsShowsTheNormalAsColor) {
   SceneBuilder scene;
   scene.add(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), lambert(vec3(0.5f)), glm::rotate(mat4(1.0f), 0.5f, vec3(0, 1, 0)));
-  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  scene.camera(orthographic({0, 0, 0.2f}, vec3(0.0f), 0.05f));
   ImageOptions options;
   options.program = program::loadProgram("normals");
   options.batches = 2;
@@ -321,7 +334,7 @@ TEST(BuiltInProgram, AoTracesAroundTheNormalEvenly) {
       SceneBuilder scene;
       scene.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)), turned);
       scene.add(quad({1, 0, -5000}, {0, 0, 10000}, {0, height, 0}), lambert(vec3(0.5f)), turned);
-      scene.camera(orthographic(0.4f * up, vec3(0.0f), 0.001f));
+      scene.camera(orthographic(0.2f * up, vec3(0.0f), 0.001f));
       ImageOptions options;
       options.program = program::loadProgram("ao");
       options.batches = 32;
@@ -341,6 +354,40 @@ TEST(BuiltInProgram, AoHasABackground) {
   options.batches = 2;
   options.set = {"background=0.25,0.5,0.75"};
   expectUniform(renderImage(scene, options), vec4(0.25f, 0.5f, 0.75f, 1.0f));
+  options.transparent = true;
+  expectUniform(renderImage(scene, options), vec4(0.0f));
+}
+
+// A panel covers the part of the image left of x = 3.5 and above y = 4.5 pixels, and so half of the pixels at its edges; what
+// is around it is black.
+TEST(BuiltInProgram, EachOneShowsPixelsAtTheirPositions) {
+  const vec2 corner(3.5f, 4.5f);
+  const std::pair<const char*, vec3> programs[] = {
+      {"ao", vec3(1.0f)}, {"naive", vec3(0.25f, 0.5f, 0.75f)}, {"normals", vec3(0.5f, 0.5f, 1.0f)}};
+  for (const auto& [name, color] : programs) {
+    SCOPED_TRACE(name);
+    SceneBuilder scene;  // 8 pixels are 8 m
+    scene.add(quad({-9, 4 - corner.y, 0}, {9 - 4 + corner.x, 0, 0}, {0, 9, 0}), emitter(vec3(0.25f, 0.5f, 0.75f)));
+    scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 4.0f));
+    ImageOptions options;
+    options.program = program::loadProgram(name);
+    options.batches = 64;
+    if (name == std::string("ao")) options.set = {"background=0,0,0"};
+    expectPixels(renderImage(scene, options),
+                 [&](vec2 pixel) { return pixel.x < corner.x && pixel.y < corner.y ? color : vec3(0.0f); },
+                 {.error = 0.01, .rounding = 1e-3});
+  }
+}
+
+TEST(BuiltInProgram, NaiveHasATransparentBackground) {
+  SceneBuilder scene;
+  scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), lambert(vec3(0.5f)))
+      .sky(vec3(1.0f))
+      .camera(orthographic(vec3(9, 0, 3), vec3(9, 0, 0), 0.05f));
+  ImageOptions options;
+  options.program = program::loadProgram("naive");
+  options.batches = 2;
+  expectUniform(renderImage(scene, options), vec4(1.0f));
   options.transparent = true;
   expectUniform(renderImage(scene, options), vec4(0.0f));
 }

@@ -92,7 +92,9 @@ dvec4 texelAt(const scene::Scene& scene, const scene::TextureUse& use, const vec
 
 TEST(TextureSlots, ReadTheirChannelsAtTheTransformedCoordinates) {
   scene::Scene scene = texturedTriangle();
-  scene::Material& m = scene.materials[0];
+  scene.materials.insert(scene.materials.begin(), scene::Material{});
+  scene.meshes[0].geometries[0].material = 1;
+  scene::Material& m = scene.materials[1];
   unsigned slots = 0;
   const auto use = [&] {
     scene::TextureUse u;

@@ -172,6 +172,14 @@ TEST(Alpha, InterpolatesVertexColors) {
   }
 }
 
+// Any-hit shaders also run for opaque materials on an instance without opaque geometry. Their alpha has no effect.
+TEST(Alpha, OpaqueMaterialsIgnoreIt) {
+  SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.4f, scene::AlphaMode::opaque), 0.0f);
+  scene.scene.instances[0].flags |= scene::kInstanceForceNoOpaque;
+  scene.add(quad({90, 0, 0}, {1, 0, 0}, {0, 1, 0}), veil(vec3(1.0f), 0.5f, scene::AlphaMode::blend));
+  expectUniform(renderImage(scene, batches(8)), vec4(0.2f, 3.0f, 0.0f, 1.0f));
+}
+
 // The surfaces along a ray are tested independently. Here the indices of triangles and geometries are (2,0), (1,8),
 // (0,16).
 TEST(Alpha, TestsSurfacesOfOneMeshIndependently) {

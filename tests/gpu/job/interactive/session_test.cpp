@@ -468,6 +468,18 @@ TEST_F(SessionTest, PicksWhatIsVisible) {
   EXPECT_TRUE(test::equalSums(sums(*session), before));
 }
 
+// A surface close to the camera, and a lens: picking uses its center.
+TEST_F(SessionTest, PicksThroughTheCenterOfTheLens) {
+  const auto session = makeSession(request());
+  session->apply(SetCamera{{.lookFrom = vec3(0.1f, 0.1f, 1.2f), .lookAt = vec3(0.1f, 0.1f, 0)}});
+  const std::optional<Pick> pinhole = session->pick({20, 12});
+  session->apply(SetLens{.apertureRadius = 0.1f, .focusDistance = 5.0f});
+  const std::optional<Pick> lens = session->pick({20, 12});
+  ASSERT_TRUE(pinhole && lens);
+  EXPECT_NEAR(pinhole->distance, 0.2f, 1e-2f) << "the front of the cube of 2 m";
+  EXPECT_LT(glm::length(lens->position - pinhole->position), 1e-5f);
+}
+
 // The path tracer has two ray types and the lesson one, of a program that intersects the boxes itself.
 TEST_F(SessionTest, PicksSolidsAndBoxes) {
   writeFile(folder_ / "a.scene.toml",
@@ -492,6 +504,26 @@ TEST_F(SessionTest, PicksSolidsAndBoxes) {
   EXPECT_NEAR(picked->position.z, 1, 1e-4f);
   EXPECT_EQ(picked->primitive, 1u);
   EXPECT_TRUE(picked->front);
+  // Seen obliquely, the pixels show three faces.
+  const vec3 eye(6, 5, 4);
+  lesson->apply(SetCamera{{.lookFrom = eye, .lookAt = vec3(0.3f, 0.2f, 0.1f)}});
+  const scene::Camera view = lesson->camera();
+  vec3 seen(0.0f);
+  for (std::uint32_t x = 12; x < 30; x += 3)
+    for (std::uint32_t y = 6; y < 20; y += 3) {
+      const vec2 plane = std::tan(0.5f * view.verticalFov) / 24.0f * vec2(2, -2) * (vec2(x, y) + 0.5f - vec2(20, 12));
+      const vec3 d = vec3(view.worldFromCamera * vec4(plane, -1.0f, 0.0f));
+      const vec3 entries = (1.0f - eye) / d, exits = (-1.0f - eye) / d;  // the slabs of the box [-1, 1]³; d is negative
+      const float entry = std::max({entries.x, entries.y, entries.z}), exit = std::min({exits.x, exits.y, exits.z});
+      if (exit < entry + 0.1f) continue;
+      const std::optional<Pick> side = lesson->pick({x, y});
+      ASSERT_TRUE(side) << x << " " << y;
+      EXPECT_LT(glm::length(side->position - (eye + entry * d)), 1e-4f) << x << " " << y;
+      seen += vec3(glm::equal(entries, vec3(entry)));
+    }
+  EXPECT_GT(std::min({seen.x, seen.y, seen.z}), 0.0f);
+  lesson->apply(SetCamera{{.lookFrom = vec3(0, 0, 9), .lookAt = vec3(0, 0, 0)}});
+  lesson->refine();
   const std::vector<std::byte> image = lesson->result().film->image(0).data;
   lesson->pick({20, 12});
   lesson->apply(SetSamples{2});
