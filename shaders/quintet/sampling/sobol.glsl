@@ -85,6 +85,8 @@ uvec2 drawDigits(Sampler s, uint seed) {
 
 uint nextBits(inout Sampler s) { return hash(drawSeed(s.pixel, s.dimension++) ^ hash(bitfieldReverse(s.index))); }
 
+void skipDraw(inout Sampler s) { s.dimension++; }
+
 float next1D(inout Sampler s) {
   const uint seed = drawSeed(s.tile, s.dimension++);
   return unitFloat(bitfieldReverse(permuteUpwards(drawDigits(s, seed).x, hash(seed ^ 0x2C1B3C6Du))));
