@@ -36,40 +36,54 @@ uint mortonInTile(uvec2 pixel) {
   return spreadBits(pixel.x & mask) | spreadBits(pixel.y & mask) << 1;
 }
 
-// Divides a power series, given by its first 32 coefficients, by q: 1/q = (1 + t)/(1 + t³).
-uint divideByQ(uint series) {
-  series ^= series << 1;
-  series ^= series << 3;
-  series ^= series << 6;
-  series ^= series << 12;
-  return series ^ series << 24;
+// The functions below compute with all base-4 digits of a Morton index at once. Digit c_i has the bits 2i and 2i + 1.
+const uint kLowBits = 0x555u;  // bit 0 of each digit
+
+// Multiplies each digit, as an element of the field with four elements, by t to the power of a digit 0, 1 or 2 of `powers`.
+uint timesPowerOfT(uint digits, uint powers) {
+  const uint once = (powers & kLowBits) * 3u;
+  const uint twice = (powers >> 1 & kLowBits) * 3u;
+  const uint low = digits & kLowBits;
+  const uint high = digits >> 1 & kLowBits;
+  const uint sum = low ^ high;  // t · (low + high t) = high + (low + high) t, because t² = t + 1
+  return digits & ~(once | twice) | (high | sum << 1) & once | (sum | low << 1) & twice;
 }
 
-// One of the 24 permutations of 0 … 3, selected by the upper 18 bits of a hash. All of them are affine over
-// bits: t + (bit 0) a + (bit 1) b with a ≠ b, and neither of them 0.
-uint permuteDigit(uint digit, uint random) {
-  const uint a = 1u + ((random >> 14 & 0x7FFFu) * 3u >> 15);
-  const uint b = 1u + (a + (random >> 29 & 1u)) % 3u;
-  return random >> 30 ^ ((digit & 1u) != 0u ? a : 0u) ^ ((digit & 2u) != 0u ? b : 0u);
-}
-
-// Shifts of x and y, first digit in bit 0. The permutation of each base-4 digit of the Morton index depends on the
-// digits above it.
-uvec2 blueShift(uint morton, uint seed) {
+// Replaces each digit by a random permutation of 0 … 3, which depends on the digits above it. All 24 of them have the form
+// t^k c + b or t^k c² + b in the field with four elements.
+uint permuteDigits(uint morton, uint seed) {
   const uint marked = morton | 1u << 2u * kTileBits;
-  uint series = 1u;  // 1/q, 1/q², …, with the same coefficients at 0 and at 1
-  uvec2 shift = uvec2(0u);
+  uint added = 0u, squared = 0u, powers = 0u;  // each level appends to the upper bits
   for (uint level = 0u; level < kTileBits; ++level) {
     uint random = seed ^ (marked >> 2u * level + 2u) * 0x9E3779B9u;
     random ^= random >> 15;
     random *= 0x2C1B3C6Du;
-    const uint digit = permuteDigit(morton >> 2u * level & 3u, random);
-    series = divideByQ(series);
-    const uint first = (digit & 1u) != 0u ? series : 0u;
-    const uint second = (digit & 2u) != 0u ? series : 0u;
-    shift ^= uvec2(first ^ second << 1, first ^ second ^ second << 1);  // t is t at 0, 1 + (t + 1) at 1
+    added = added >> 2 | random & 0xC0000000u;
+    squared = squared >> 2 | random & 0x20000000u;
+    powers = powers >> 2 | (random & 0x1FFFC000u) * 3u & 0x60000000u;  // the upper part of 15 bits times 3
   }
-  return shift;
+  const uint unused = 32u - 2u * kTileBits;
+  const uint digits = morton ^ morton >> 1 & squared >> unused - 1u;  // c² is c, except that 2 and 3 are exchanged
+  return timesPowerOfT(digits, powers >> unused - 1u) ^ added >> unused;
+}
+
+// Shifts of x and y, first digit in bit 0: the first 32 Taylor coefficients of c_0/q + … + c_5/q⁶ at t = 0 and at t = 1.
+// The common numerator is c_0 q⁵ + … + c_5, and 1/q⁶ = q²/q⁸ = q² (1 + t⁸)/(1 + t²⁴), because squares of sums are sums
+// of squares.
+uvec2 blueShift(uint morton, uint seed) {
+  const uint digits = permuteDigits(morton, seed);
+  // Both numerators in one word, 16 bits each. q is the same polynomial in t and in t - 1, and c = bit 0 + bit 1 + (bit 1) (t - 1).
+  uint p = digits | (digits ^ digits >> 1 & kLowBits) << 16;
+  // Pairs: c_2i q + c_2i+1. Then all three: (c_0 q + c_1) q⁴ + (c_2 q + c_3) q² + (c_4 q + c_5), q⁴ = t⁸ + t⁴ + 1.
+  const uint even = p & 0x33333333u;
+  p = p >> 2 & 0x33333333u ^ even ^ even << 1 ^ even << 2;
+  const uint first = p & 0x000F000Fu;
+  const uint second = p & 0x00F000F0u;
+  p = p >> 8 & 0x000F000Fu ^ second ^ second >> 2 ^ second >> 4 ^ first ^ first << 4 ^ first << 8;
+  p ^= p << 2 ^ p << 4;  // times q²
+  uvec2 shift = uvec2(p & 0xFFFFu, p >> 16);
+  shift ^= shift << 8;
+  return shift ^ shift << 24;
 }
 
 #endif

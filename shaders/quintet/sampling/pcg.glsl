@@ -43,6 +43,7 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSample
 uvec4 nextWords(inout Sampler s) { return pcg4d(uvec4(s.pixel, s.index, s.dimension++, s.seed)); }
 
 uint nextBits(inout Sampler s) { return nextWords(s).x; }
+void skipDraw(inout Sampler s) { s.dimension++; }
 float next1D(inout Sampler s) { return unitFloat(nextWords(s).x); }
 vec2 next2D(inout Sampler s) {
   const uvec4 words = nextWords(s);

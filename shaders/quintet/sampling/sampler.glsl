@@ -5,6 +5,7 @@
 //                                                                         frame.plannedSamples
 //   float next1D(inout Sampler)   vec2 next2D(inout Sampler)   in [0,1)
 //   uint nextBits(inout Sampler)  32 independent bits, e.g. a ray's seed
+//   void skipDraw(inout Sampler)  instead of a draw that is not needed: later draws have the same numbers as after it
 // A program includes either sobol.glsl (converges faster) or pcg.glsl (independent numbers), not both.
 #ifndef QUINTET_SAMPLING_SAMPLER_GLSL
 #define QUINTET_SAMPLING_SAMPLER_GLSL

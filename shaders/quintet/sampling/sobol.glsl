@@ -22,11 +22,11 @@
 #include "sampler.glsl"
 
 struct Sampler {
-  uint index;      // of the sample in its pixel
+  uint index;      // of the sample in its pixel, with its bits reversed
   uint pixel;      // seed of the pixel
   uint tile;       // seed of its tile
   uint morton;     // Morton index of the pixel in the tile
-  uint ownBits;    // mask of the index bits that are shuffled per pixel; the others are shuffled per tile
+  uint ownBits;    // mask of the bits of `index` that are shuffled per pixel; the others are shuffled per tile
   uint dimension;  // draws so far
 };
 
@@ -63,7 +63,8 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSample
   const uint tile = pixelSeed(pixel >> kTileBits, hash(seed));
   const int node = findMSB(sampleIndex ^ plannedSamples);  // -1: none
   const uint ownBits = (1u << max(node, 0)) - 1u;
-  return Sampler(sampleIndex, own, plannedSamples == kIndependentPixels ? own : tile, mortonInTile(pixel), ownBits, 0u);
+  return Sampler(bitfieldReverse(sampleIndex), own, plannedSamples == kIndependentPixels ? own : tile, mortonInTile(pixel),
+                 bitfieldReverse(ownBits), 0u);
 }
 
 // Independent pixels.
@@ -73,19 +74,18 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed) {
 
 uint drawSeed(uint seed, uint dimension) { return hash(seed + 0x9E3779B9u * dimension); }
 
-// Nested uniform scramble of the index.
-uint shuffled(uint index, uint seed) { return bitfieldReverse(permuteUpwards(bitfieldReverse(index), seed)); }
-
 // Digits of the sample's point before the scramble, with the first digit in bit 0. The first dimension is the reversed
-// index.
+// index. Nested uniform scrambles shuffle the index.
 uvec2 drawDigits(Sampler s, uint seed) {
-  const uint ofTile = shuffled(s.index, seed);
-  const uint ofPixel = shuffled(s.index, hash(seed ^ s.pixel));
-  const uint index = (ofTile & ~s.ownBits) | (ofPixel & s.ownBits);
+  const uint ofTile = permuteUpwards(s.index, seed);
+  const uint ofPixel = permuteUpwards(s.index, hash(seed ^ s.pixel));
+  const uint index = bitfieldReverse((ofTile & ~s.ownBits) | (ofPixel & s.ownBits));
   return uvec2(index, sobolSecondReversed(index)) ^ blueShift(s.morton, seed);
 }
 
-uint nextBits(inout Sampler s) { return hash(drawSeed(s.pixel, s.dimension++) ^ hash(s.index)); }
+uint nextBits(inout Sampler s) { return hash(drawSeed(s.pixel, s.dimension++) ^ hash(bitfieldReverse(s.index))); }
+
+void skipDraw(inout Sampler s) { s.dimension++; }
 
 float next1D(inout Sampler s) {
   const uint seed = drawSeed(s.tile, s.dimension++);

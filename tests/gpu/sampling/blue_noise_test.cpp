@@ -12,6 +12,7 @@
 #include "harness.h"
 #include "quintet/shared/frame.h"
 #include "sampling/nets.h"
+#include "sampling/sobol_reference.h"
 
 namespace quintet::test {
 namespace {
@@ -26,7 +27,9 @@ struct PixelDraw {
   std::uint32_t planned;
 };
 
-std::vector<vec2> evaluatePixels(const std::vector<PixelDraw>& draws) {
+std::vector<vec2> evaluatePixels(const std::vector<PixelDraw>& draws, const Defines& defines = {}) {
+  ComputeOptions options;
+  options.defines = defines;
   return runCompute<vec2>(R"(
     #include <quintet/frame.glsl>
     #include <quintet/sampling/sobol.glsl>
@@ -35,10 +38,14 @@ std::vector<vec2> evaluatePixels(const std::vector<PixelDraw>& draws) {
     vec2 run(uint i, In value) {
       Sampler s = makeSampler(value.pixel, value.index, value.seed, value.planned);
       s.dimension = value.dimension;
+    #ifdef ONE
+      return vec2(next1D(s), 0.0);
+    #else
       return next2D(s);
+    #endif
     }
   )",
-                          draws, draws.size());
+                          draws, draws.size(), options);
 }
 
 // Samples [first, first + count) of the pixels of a square.
@@ -59,6 +66,28 @@ double planeUniformity(const std::vector<vec2>& points) {
   for (const vec2& p : points)
     observed[static_cast<std::size_t>(p.y * kCells) * kCells + static_cast<std::size_t>(p.x * kCells)] += 1.0;
   return chiSquareTest(observed, expected).pValue;
+}
+
+// The shaders use short cuts; the numbers are those of the definition, bit for bit.
+TEST(BlueNoise, NumbersAreThoseOfTheDefinition) {
+  std::vector<PixelDraw> draws;
+  std::uint32_t random = 1;
+  const auto next = [&] { return random = random * 1664525u + 1013904223u; };
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint32_t planned = i % 4 == 0 ? kIndependent : i % 4 == 1 ? 0u : next() >> (8 + i % 20);
+    draws.push_back({{next() >> 18, next() >> 18}, next() >> i % 32, next() >> 22, next(), planned});
+  }
+  for (const std::uint32_t index : {0u, 1u, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFFu})
+    for (const std::uint32_t planned : {0u, 1u, index, 0x7FFFFFFFu, kIndependent})
+      draws.push_back({{65535u, 63u}, index, 0u, 7u, planned});
+  const std::vector<vec2> two = evaluatePixels(draws), one = evaluatePixels(draws, {{"ONE", "1"}});
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const PixelDraw& d = draws[i];
+    const vec2 wanted = SobolReference(d.pixel, d.index, d.seed, d.planned).at(d.dimension);
+    ASSERT_EQ(two[i], wanted) << "pixel " << d.pixel.x << " " << d.pixel.y << ", sample " << d.index << " of "
+                              << d.planned << ", draw " << d.dimension << ", seed " << d.seed;
+    ASSERT_EQ(one[i].x, wanted.x) << i;
+  }
 }
 
 struct Range {
