@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "cli/command.h"
@@ -31,7 +32,6 @@
 #include "lab/start_target.h"
 #include "lab/worker.h"
 #include "lab/worker_process.h"
-#include "shader/include_roots.h"
 
 extern char** environ;  // NOLINT: POSIX
 
@@ -80,7 +80,7 @@ int serve(const cli::LabOptions& request) {
   fs::create_directories(target.folder, error);
   if (error) throw FileError(target.folder, "cannot create the folder: " + error.message());
   const ProjectFolder project(target.folder);
-  shader::addIncludeRoot(project.root());  // of the workers, too
+  addFileRoot(project.root());  // of the workers, too
   removeAbandonedFolders();
   ServerOptions options;
   options.address = request.bind;

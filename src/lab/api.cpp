@@ -109,6 +109,31 @@ std::map<std::string, std::string> importedFiles(const std::string& body, const 
   return files;
 }
 
+class PendingFormat : public PendingAnswer {
+ public:
+  // `running`: number of such objects.
+  PendingFormat(const fs::path& formatter, const std::string& text, std::shared_ptr<int> running)
+      : name_(formatter.filename().string()), format_(formatter, text), running_(std::move(running)) {
+    ++*running_;
+  }
+  ~PendingFormat() override { --*running_; }
+
+  std::optional<HttpResponse> poll() override {
+    try {
+      const std::optional<std::string> text = format_.poll();
+      if (!text) return {};
+      return jsonResponse({{"text", *text}, {"formatter", name_}});
+    } catch (const Error& error) {
+      return errorResponse(500, error.what());
+    }
+  }
+
+ private:
+  const std::string name_;
+  SourceFormat format_;
+  const std::shared_ptr<int> running_;
+};
+
 }  // namespace
 
 std::uint64_t maxBodyBytes(const std::string& method, const std::string& target) {
@@ -117,7 +142,7 @@ std::uint64_t maxBodyBytes(const std::string& method, const std::string& target)
   return kMaxBodyBytes;
 }
 
-HttpResponse Api::handle(const HttpRequest& request) const {
+Api::Answer Api::handle(const HttpRequest& request) const {
   const std::optional<RequestTarget> target = parseTarget(request.target);
   if (!target) return errorResponse(400, "the URL is not valid");
   try {
@@ -141,7 +166,7 @@ HttpResponse Api::handle(const HttpRequest& request) const {
   }
 }
 
-HttpResponse Api::route(const HttpRequest& request, const RequestTarget& target) const {
+Api::Answer Api::route(const HttpRequest& request, const RequestTarget& target) const {
   const std::string& path = target.path;
   if (path.starts_with(kFiles)) return file(request, path.substr(kFiles.size()));
   if (path == "/api/programs" && request.method == "POST") return copyProgram(request.body);
@@ -298,10 +323,11 @@ HttpResponse Api::documentation(const std::string& name) const {
       .type = std::string(contentType(name)), .body = std::string(text), .headers = {{"Cache-Control", "no-cache"}}};
 }
 
-HttpResponse Api::format(const std::string& text) const {
+Api::Answer Api::format(const std::string& text) const {
   const fs::path formatter = findFormatter();
   if (formatter.empty()) return errorResponse(501, "clang-format is not installed on the machine of the server");
-  return jsonResponse({{"text", formatSource(formatter, text)}, {"formatter", formatter.filename().string()}});
+  if (*formatters_ >= kMaxFormatters) return errorResponse(503, "other sources are being formatted; try again");
+  return std::make_unique<PendingFormat>(formatter, text, formatters_);
 }
 
 HttpResponse Api::exportProgram(const RequestTarget& target) const {

@@ -6,7 +6,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 
 #include "base/math.h"
 #include "lab/http_message.h"
@@ -17,6 +20,7 @@ namespace quintet::lab {
 
 inline constexpr std::uint64_t kMaxUploadBytes = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t kMaxImportBytes = std::uint64_t{16} << 20;
+inline constexpr int kMaxFormatters = 4;                                // that run at a time
 inline constexpr std::uint64_t kMaxBodyBytes = std::uint64_t{1} << 20;  // of all other requests
 
 // What a session shows if the page asks for nothing else, and what the page should know.
@@ -32,16 +36,25 @@ struct LabDefaults {
 // The largest body that a request may have, bytes.
 std::uint64_t maxBodyBytes(const std::string& method, const std::string& target);
 
+// An answer that a process is still making.
+class PendingAnswer {
+ public:
+  virtual ~PendingAnswer() = default;
+  // Nothing before the process has ended.
+  virtual std::optional<HttpResponse> poll() = 0;
+};
+
 class Api {
  public:
   // Both must outlive the object.
   Api(const ProjectFolder& project, const LabDefaults& defaults) : project_(project), defaults_(defaults) {}
 
-  // The answer to a request below /api/, which is an error for all that fails.
-  HttpResponse handle(const HttpRequest& request) const;
+  // The answer to a request below /api/, which is an error for all that fails; or one that takes long.
+  using Answer = std::variant<HttpResponse, std::unique_ptr<PendingAnswer>>;
+  Answer handle(const HttpRequest& request) const;
 
  private:
-  HttpResponse route(const HttpRequest& request, const RequestTarget& target) const;
+  Answer route(const HttpRequest& request, const RequestTarget& target) const;
   HttpResponse file(const HttpRequest& request, const std::string& name) const;
   HttpResponse putFile(const HttpRequest& request, const std::string& name) const;
   HttpResponse describeProject() const;
@@ -51,12 +64,13 @@ class Api {
   HttpResponse copyProgram(const std::string& body) const;
   HttpResponse lessons() const;
   HttpResponse documentation(const std::string& name) const;
-  HttpResponse format(const std::string& text) const;
+  Answer format(const std::string& text) const;
   HttpResponse exportProgram(const RequestTarget& target) const;
   HttpResponse importProgram(const HttpRequest& request, const RequestTarget& target) const;
 
   const ProjectFolder& project_;
   const LabDefaults& defaults_;
+  const std::shared_ptr<int> formatters_ = std::make_shared<int>(0);  // that run now
 };
 
 }  // namespace quintet::lab

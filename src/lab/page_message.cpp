@@ -98,6 +98,7 @@ PageCommand parseOpen(const Json& object) {
   open.toneMap = fields.findText("tonemap").value_or("default");
   if (const auto frame = fields.findNumber("frame")) open.frame = static_cast<float>(*frame);
   if (fields.has("seed")) open.seed = fields.index("seed");
+  if (fields.has("number")) open.number = fields.index("number");
   fields.rejectOthers();
   return open;
 }

@@ -37,6 +37,7 @@ struct OpenSession {
   std::optional<float> frame;
   std::optional<job::CameraRequest> camera;
   std::uint32_t seed = 0;
+  std::uint32_t number = 0;  // repeated by the event "opening"
 };
 struct ImageReceived {
   std::uint32_t image = 0;

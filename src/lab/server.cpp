@@ -5,15 +5,18 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "base/error.h"
 #include "lab/access.h"
@@ -30,9 +33,10 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::uint32_t kMaxHeader = 16 * 1024;   // bytes
-constexpr std::chrono::seconds kRequestTime{30};  // for a request, and between two
-constexpr std::chrono::seconds kStopTime{2};      // for the goodbye to the pages
+constexpr std::uint32_t kMaxHeader = 16 * 1024;      // bytes
+constexpr std::chrono::seconds kRequestTime{30};     // for a request, and between two
+constexpr std::chrono::milliseconds kAnswerPoll{5};  // between looks at a process that makes an answer
+constexpr std::chrono::seconds kStopTime{2};         // for the goodbye to the pages
 constexpr std::size_t kMaxConnections = 256;
 
 std::string machineName() {
@@ -129,7 +133,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void answer() {
     const std::optional<RequestTarget> target = parseTarget(request_.target);
     nonce_ = randomToken();
-    if (target->path.starts_with("/api/")) return write(site_.api.handle(request_));
+    if (target->path.starts_with("/api/")) {
+      Api::Answer answer = site_.api.handle(request_);
+      if (auto* response = std::get_if<HttpResponse>(&answer)) return write(std::move(*response));
+      stream_.expires_never();  // the answer has a time limit of its own
+      return awaitAnswer(std::get<std::unique_ptr<PendingAnswer>>(std::move(answer)));
+    }
     if (target->path == "/ws") return write(errorResponse(426, "this address is that of the WebSocket"));
     if (request_.method != "GET") {
       HttpResponse response = errorResponse(405, fmt::format("the method {} is not supported here", request_.method));
@@ -137,6 +146,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return write(std::move(response));
     }
     write(site_.page.get(target->path, request_.header("if-none-match"), nonce_));
+  }
+
+  // Other connections are served in the meantime.
+  void awaitAnswer(std::shared_ptr<PendingAnswer> answer) {
+    if (std::optional<HttpResponse> response = answer->poll()) return write(std::move(*response));
+    answerTimer_.expires_after(kAnswerPoll);
+    answerTimer_.async_wait([self = shared_from_this(), answer = std::move(answer)](const error_code& error) {
+      if (!error) self->awaitAnswer(answer);
+    });
   }
 
   void upgrade() {
@@ -197,6 +215,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   static constexpr std::size_t kMaxDrained = std::size_t{16} << 20;
 
   beast::tcp_stream stream_;
+  asio::steady_timer answerTimer_{stream_.get_executor()};
   Site& site_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;

@@ -157,6 +157,8 @@ std::string workerJson(const std::string& state, const std::string& message, uns
   return lineOf({{"event", "worker"}, {"state", state}, {"message", message}, {"restarts", restarts}});
 }
 
+std::string openingJson(std::uint32_t number) { return lineOf({{"event", "opening"}, {"number", number}}); }
+
 std::string messageJson(const std::string& event, const std::string& message, const std::string& key) {
   return lineOf({{"event", event}, {key, message}});
 }

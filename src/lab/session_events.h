@@ -26,8 +26,9 @@ struct Statistics {
 // Programs with a camera of their own ignore navigation.
 bool usesCamera(const program::Program& program);
 
-// `device`: its name. At most kMaxListedNames names of each kind.
+// openingJson(): what follows belongs to the `open` of this number. `device`: its name. At most kMaxListedNames names of each kind.
 inline constexpr std::size_t kMaxListedNames = 1000;
+std::string openingJson(std::uint32_t number);
 std::string openedJson(const job::interactive::Session& session, const std::string& program, const std::string& scene,
                        const std::string& device);
 std::string stateJson(const job::interactive::Session& session, const std::string& program, bool paused);

@@ -11,11 +11,10 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <string_view>
 #include <system_error>
-#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,7 +34,6 @@ constexpr std::string_view kStyle =
     "--style={BasedOnStyle: Google, ColumnLimit: 120, ReflowComments: false, SortIncludes: Never, "
     "DerivePointerAlignment: false, AllowShortBlocksOnASingleLine: Always, "
     "AllowShortIfStatementsOnASingleLine: AllIfsAndElse}";
-constexpr std::chrono::milliseconds kPoll{2};
 
 // A file without a name, in memory.
 class MemoryFile {
@@ -80,22 +78,6 @@ pid_t startFormatter(const fs::path& formatter, const MemoryFile& input, const M
   return process;
 }
 
-// Returns whether the process succeeded in time.
-bool waitForSuccess(pid_t process) {
-  const Stopwatch clock;
-  int status = 0;
-  for (;;) {
-    const pid_t ended = ::waitpid(process, &status, WNOHANG);
-    if (ended == process) return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (ended < 0 && errno != EINTR) return false;
-    if (clock.seconds() > kFormatSeconds) break;
-    std::this_thread::sleep_for(kPoll);
-  }
-  ::kill(process, SIGKILL);
-  ::waitpid(process, &status, 0);
-  return false;
-}
-
 std::string withoutSpace(std::string text) {
   std::erase_if(text, [](unsigned char c) { return std::isspace(c); });
   return text;
@@ -109,13 +91,37 @@ fs::path findFormatter() {
   return {};
 }
 
-std::string formatSource(const fs::path& formatter, const std::string& text) {
-  const MemoryFile input(text), output;
-  if (!waitForSuccess(startFormatter(formatter, input, output)))
-    throw Error(fmt::format("{} failed", formatter.filename().string()));
-  std::string formatted = output.content();
-  if (withoutSpace(formatted) != withoutSpace(text))
-    throw Error(fmt::format("{} would change more than white space", formatter.filename().string()));
+struct SourceFormat::Run {
+  MemoryFile input, output;
+  Stopwatch clock;
+  pid_t process;
+
+  Run(const fs::path& formatter, const std::string& text)
+      : input(text), process(startFormatter(formatter, input, output)) {}
+};
+
+SourceFormat::SourceFormat(const fs::path& formatter, std::string text)
+    : name_(formatter.filename().string()), text_(std::move(text)), run_(std::make_unique<Run>(formatter, text_)) {}
+
+SourceFormat::~SourceFormat() {
+  if (run_->process == 0) return;
+  ::kill(run_->process, SIGKILL);
+  while (::waitpid(run_->process, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+std::optional<std::string> SourceFormat::poll() {
+  int status = 0;
+  const pid_t ended = ::waitpid(run_->process, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) {
+    if (run_->clock.seconds() <= kFormatSeconds) return {};
+    throw Error(fmt::format("{} has taken longer than {:g} s", name_, kFormatSeconds));
+  }
+  run_->process = 0;
+  if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) throw Error(fmt::format("{} failed", name_));
+  std::string formatted = run_->output.content();
+  if (withoutSpace(formatted) != withoutSpace(text_))
+    throw Error(fmt::format("{} would change more than white space", name_));
   return formatted;
 }
 

@@ -24,6 +24,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file_roots.h"
 #include "base/parse.h"
 #include "base/stopwatch.h"
 #include "check/check.h"
@@ -53,7 +54,6 @@
 #include "output/plan.h"
 #include "output/write.h"
 #include "program/load.h"
-#include "shader/include_roots.h"
 
 namespace quintet::lab {
 namespace {
@@ -153,7 +153,7 @@ class Worker : public job::Observer {
  public:
   Worker(FrameChannel& channel, WorkerSettings settings)
       : channel_(channel), settings_(std::move(settings)), project_(settings_.folder), inbox_(channel) {
-    shader::addIncludeRoot(private_.path());
+    addFileRoot(private_.path());
   }
 
   int run() {
@@ -161,7 +161,15 @@ class Worker : public job::Observer {
     while (!inbox_.closed()) {
       const double wait =
           session_ && !isResting() ? std::min(kWatchSeconds, session_->secondsUntilWork()) : kWatchSeconds;
-      for (const Inbox::Message& message : inbox_.take(wait)) handle(message);
+      const std::vector<Inbox::Message> messages = inbox_.take(wait);
+      const auto lastOpen = std::find_if(messages.rbegin(), messages.rend(), opens).base();
+      for (auto message = messages.begin(); message != messages.end(); ++message) {
+        // A user who switches programs quickly waits for the last one only.
+        if (opens(*message) && message + 1 != lastOpen)
+          skip(*message);
+        else
+          handle(*message);
+      }
       if (retry_ && (retryDue_ || retryWatcher_->pending())) {
         retryWatcher_->wait(0);
         const OpenSession again = *retry_;
@@ -219,7 +227,20 @@ class Worker : public job::Observer {
     if (answered && !id.empty()) send(withId(R"({"event":"done"})", id));
   }
 
+  static bool opens(const Inbox::Message& message) {
+    const auto* parsed = std::get_if<PageMessage>(&message.content);
+    return parsed && std::holds_alternative<OpenSession>(parsed->command);
+  }
+
+  void skip(const Inbox::Message& message) {
+    hold_.reset();
+    const std::string& id = std::get<PageMessage>(message.content).id;
+    if (!id.empty()) send(withId(messageJson("error", "a later 'open' replaces this one"), id));
+  }
+
   void execute(const OpenSession& command, const std::string& /*id*/) {
+    discardGraphs();
+    send(openingJson(command.number));
     const std::optional<std::string> hold = std::exchange(hold_, std::nullopt);
     if (!hold) return open(command);
     session_.reset();

@@ -11,12 +11,12 @@
 #include "base/embedded.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "base/suggestion.h"
 #include "program/description/parser.h"
 #include "program/gsn/lecture.h"
 #include "program/gsn/uniforms.h"
 #include "shader/include_resolver.h"
-#include "shader/include_roots.h"
 
 namespace quintet {
 std::span<const EmbeddedFile> embeddedPrograms();
@@ -36,7 +36,7 @@ constexpr std::string_view kDescription = "program.toml";
 
 Program loadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
-  const auto roots = shader::IncludeRoots::fromEnvironment();
+  const auto roots = FileRoots::fromEnvironment();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file() && entry.file_size() <= kMaxFileBytes && roots.allows(entry.path()))
       files[entry.path().filename().string()] = readTextFile(entry.path());
@@ -62,7 +62,7 @@ std::optional<Program> findFolder(const std::string& nameOrPath) {
 // Reads the images that comments of uniforms name as defaults.
 void readImages(const fs::path& folder, const std::string& text, std::map<std::string, std::string>& files) {
   LectureErrors ignored(text, {});
-  const auto roots = shader::IncludeRoots::fromEnvironment();
+  const auto roots = FileRoots::fromEnvironment();
   for (const LectureUniform& uniform : findUniforms(LectureText(text), ignored)) {
     const std::string& image = uniform.parameter.defaultImage;
     std::error_code failed;
@@ -77,7 +77,7 @@ void readImages(const fs::path& folder, const std::string& text, std::map<std::s
 // Returns the files that `text` includes by quoted names relative to the folder, and those that they include.
 std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
   std::map<std::string, std::string> files;
-  const auto roots = shader::IncludeRoots::fromEnvironment();
+  const auto roots = FileRoots::fromEnvironment();
   std::deque<std::string> open{text};
   while (!open.empty()) {
     const std::string current = std::move(open.front());
@@ -111,7 +111,7 @@ Program loadLecture(const fs::path& file) {
   const std::string text = readTextFile(file);
   const fs::path folder = file.parent_path();
   std::map<std::string, std::string> files = readIncludes(folder, text);
-  const auto roots = shader::IncludeRoots::fromEnvironment();
+  const auto roots = FileRoots::fromEnvironment();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
     const std::string name = entry.path().filename().string();
     if (name.ends_with(".scene.toml") && roots.allows(entry.path()) && entry.is_regular_file(failed) &&

@@ -3,7 +3,7 @@
 //
 // #include <x>  searches the virtual files, the override folder, the embedded library, the include folders.
 // #include "x"  searches relative to the including file (on disk or in the library), then as <x>.
-// Files on disk must be in the IncludeRoots of the environment, if it has any.
+// Files on disk must be in the FileRoots of the environment, if it has any.
 #ifndef QUINTET_SHADER_INCLUDE_RESOLVER_H
 #define QUINTET_SHADER_INCLUDE_RESOLVER_H
 
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/embedded.h"
-#include "shader/include_roots.h"
+#include "base/file_roots.h"
 #include "shader/source.h"
 
 namespace quintet::shader {
@@ -53,7 +53,7 @@ class IncludeResolver {
   std::string_view textOf(std::string_view name) const;
   // The root and all files found so far.
   std::vector<const SourceFile*> files() const;
-  bool limited() const { return roots_.limited(); }  // to the IncludeRoots of the environment
+  bool limited() const { return roots_.limited(); }  // to the FileRoots of the environment
   // The folders that resolve() searches, in order, for an error message.
   std::vector<std::string> searchedFolders(const SourceFile& from, bool quoted) const;
 
@@ -69,7 +69,7 @@ class IncludeResolver {
   const Source& source_;
   const CompilerOptions& options_;
   std::span<const EmbeddedFile> library_;
-  const IncludeRoots roots_ = IncludeRoots::fromEnvironment();
+  const FileRoots roots_ = FileRoots::fromEnvironment();
   SourceFile root_;
   std::map<std::string, SourceFile, std::less<>> files_;  // by SourceFile::name
 };

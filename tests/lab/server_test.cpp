@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The HTTP side of the lab as a process: who gets in, and what files they reach.
+#include <signal.h>  // NOLINT: kill() of POSIX
+#include <stdlib.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <future>
+#include <optional>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 
 #include "base/file.h"
+#include "lab/api.h"
 #include "lab/project_folder.h"
 #include "lab/source_format.h"
 #include "lab/zip.h"
@@ -191,6 +202,70 @@ TEST_F(LabServer, FormatsSources) {
             "void main() { /**** MISS SHADER ****/\n  float a = 1.0;\n  if (a > 0.0) payload.color = vec3(a);\n}\n");
   EXPECT_THAT(reply.json().at("formatter").get<std::string>(), StartsWith("clang-format"));
   EXPECT_EQ(get("/api/format").status, 405u);
+}
+
+// A script stands for clang-format: it waits until the test lets it continue.
+TEST(LabFormat, DoesNotKeepOthersWaiting) {
+  const TempFolder folder;
+  fs::create_directories(folder / "bin");
+  fs::create_directories(folder / "project");
+  const std::string path = std::getenv("PATH");
+  const auto writeFormatter = [&](const std::string& script) {
+    writeFile(folder / "bin/clang-format", "#!/bin/sh\n" + script);
+    fs::permissions(folder / "bin/clang-format", fs::perms::owner_all);
+  };
+  writeFormatter("echo $$ > " + (folder / "started.").string() + "$$\nwhile [ ! -e " + (folder / "go").string() +
+                 " ]; do sleep 0.01; done\ntr ' ' '\\n'\n");
+  ::setenv("PATH", ((folder / "bin").string() + ":" + path).c_str(), 1);
+  std::optional<LabProcess> server(std::in_place, folder / "project");
+  ::setenv("PATH", path.c_str(), 1);
+  const auto format = [&] { return server->request("POST", "/api/format", "a b"); };
+  const auto started = [&] {
+    std::vector<pid_t> processes;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+      if (const std::string name = entry.path().filename(); name.starts_with("started."))
+        processes.push_back(std::stoi(name.substr(name.find('.') + 1)));
+    return processes;
+  };
+  const auto awaitStarted = [&](std::size_t count) {
+    for (int i = 0; i < 1000 && started().size() < count; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_EQ(started().size(), count);
+  };
+
+  std::vector<std::future<Reply>> replies;
+  for (int i = 0; i < lab::kMaxFormatters; ++i) replies.push_back(std::async(std::launch::async, format));
+  awaitStarted(lab::kMaxFormatters);
+  EXPECT_EQ(server->request("GET", "/api/project").status, 200u) << "while the formatters run";
+  EXPECT_EQ(format().status, 503u);
+  writeFile(folder / "go", "");
+  for (std::future<Reply>& reply : replies) {
+    const Reply formatted = reply.get();
+    EXPECT_EQ(formatted.status, 200u) << formatted.body;
+    EXPECT_EQ(formatted.json().at("text"), "a\nb");
+  }
+
+  writeFormatter("echo other text\n");
+  EXPECT_THAT(format().body, HasSubstr("clang-format would change more than white space"));
+  writeFormatter("exit 1\n");
+  EXPECT_EQ(format().status, 500u);
+  EXPECT_THAT(format().body, HasSubstr("clang-format failed"));
+
+  // A formatter ends with the server.
+  for (const pid_t process : started()) fs::remove(folder / ("started." + std::to_string(process)));
+  writeFormatter("echo > " + (folder / "started.").string() + "$$\nexec sleep 60\n");
+  const auto last = std::async(std::launch::async, [&] {
+    try {
+      format();
+    } catch (const std::exception&) {  // the server ends without an answer
+    }
+  });
+  awaitStarted(1);
+  const pid_t process = started().front();
+  EXPECT_EQ(::kill(process, 0), 0);
+  EXPECT_EQ(server->stop(), 0);
+  for (int i = 0; i < 200 && ::kill(process, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_NE(::kill(process, 0), 0);
 }
 
 TEST_F(LabServer, CopiesExportsAndImportsPrograms) {

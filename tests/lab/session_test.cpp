@@ -360,6 +360,26 @@ TEST_F(LabSession, IncludesFilesOfTheProjectOnly) {
   EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 0, 255));
 }
 
+TEST_F(LabSession, ScenesReadFilesOfTheProjectOnly) {
+  fs::create_directories(folder_ / "inner/scenes");
+  const auto png = io::encodePng(io::makeImage(2, 2, 3, io::PixelType::u8, io::ColorEncoding::sRgb));
+  writeFile(folder_ / "secret.png", png);
+  writeFile(folder_ / "inner/mine.png", png);
+  const LabProcess server(folder_ / "inner", {"--size", "16x16", "--spp", "1"});
+  const auto errorsWith = [&](const std::string& image) {
+    writeFile(folder_ / "inner/scenes/a.scene.toml", "[[material]]\nname = 'a'\nbase_color_texture = '" + image +
+                                                         "'\n[[mesh]]\nshape = 'quad'\nmaterial = 'a'\n");
+    PageClient page(server);
+    Json command = open("<programs/normals>");
+    command["scene"] = "scenes/a.scene.toml";
+    page.send(command);
+    return page.waitFor("diagnostics").at("diagnostics").dump();
+  };
+  EXPECT_EQ(errorsWith("../mine.png"), "[]");
+  for (const std::string& image : {std::string("../../secret.png"), (folder_ / "secret.png").string()})
+    EXPECT_THAT(errorsWith(image), HasSubstr("is outside of the project"));
+}
+
 TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {
   fs::create_directory(folder_ / "inner");
   const LabProcess server(folder_ / "inner", {"--size", "16x16"});
@@ -376,6 +396,28 @@ TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {
   done(page, 1);
   page.send({{"do", "environment"}, {"source", "/etc/passwd"}});
   EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("is not a name"));
+}
+
+// The commands arrive before the worker has opened its device.
+TEST_F(LabSession, OpensOnlyTheLastOfSeveralPrograms) {
+  const LabProcess server = start();
+  PageClient page(server);
+  for (int number = 1; number <= 3; ++number) {
+    Json command = open(number == 3 ? "mine" : "<programs/normals>");
+    command["number"] = number;
+    command["id"] = number;
+    page.send(command);
+  }
+  done(page, 3);
+  std::vector<Json> openings, skipped, opened;
+  for (const Json& event : page.events()) {
+    if (event.at("event") == "opening") openings.push_back(event.at("number"));
+    if (event.at("event") == "opened") opened.push_back(event.at("program"));
+    if (event.at("event") == "error") skipped.push_back(event.at("id"));
+  }
+  EXPECT_EQ(openings, (std::vector<Json>{3}));
+  EXPECT_EQ(opened, (std::vector<Json>{"mine"}));
+  EXPECT_EQ(skipped, (std::vector<Json>{1, 2}));
 }
 
 TEST_F(LabSession, RendersAProgramThatIsNotSavedAndLeavesNoFiles) {

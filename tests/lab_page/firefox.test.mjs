@@ -6,13 +6,13 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 import { after, before, test } from "node:test";
 import { Firefox, kKeys } from "./firefox.mjs";
-import { Server } from "./harness.mjs";
+import { kSmall, Server } from "./harness.mjs";
 
 let server;
 let firefox;
 
 before(async () => {
-  server = await Server.start();
+  server = await Server.start({ args: kSmall });
   firefox = await Firefox.start();
   await firefox.open(server.url); // the cookie
 });
@@ -22,11 +22,14 @@ after(async () => {
 });
 
 const hasImage = () => Number(document.querySelector("canvas.image")?.dataset.shown) > 0 && document.querySelector(".image-overlay").hidden && /(Frame \d|samples)/.test(document.querySelector(".image-facts").textContent);
-const isComplete = () => /^(\d+) of \1 samples/.test(document.querySelector(".image-facts")?.textContent ?? "");
+const isComplete = () => document.querySelector("canvas.image")?.dataset.state === "complete";
 const imageData = () => document.querySelector("canvas.image").toDataURL();
 const differs = (before) => document.querySelector("canvas.image").toDataURL() !== before;
 
+const isSaved = () => /^(Saved|Built-in)/.test(document.querySelector(".save-state")?.textContent ?? "Saved");
+
 async function openPage(hash) {
+  await firefox.waitFor(isSaved); // else the browser would ask whether to leave
   await firefox.open("about:blank");
   await firefox.open(`${server.origin}/${hash}`);
   await firefox.waitFor(hasImage);

@@ -47,7 +47,9 @@ test("the checks of all tasks reject the lesson and accept the solution", { time
       }
       for (const task of tasks) {
         await task.getByRole("button", { name: "Solution" }).click();
+        const saved = page.waitForResponse((response) => response.request().method() === "PUT" && response.ok());
         await page.getByRole("button", { name: "Show the solution" }).click();
+        await saved;
         await waitForSaved(page);
         const { passed, text } = await check(task);
         assert.ok(passed, `the solution does not pass: ${text}`);

@@ -188,6 +188,7 @@ class FakeSession {
     return isBuiltIn(this.state.program) ? file.replace(/^<?(?:programs\/)?(lessons\/[^/]+|[^/]+)\/(?=[^/]*$)/, `${this.state.program}/`) : path.relative(folder, file);
   }
   async open(command) {
+    this.event("opening", { number: command.number ?? 0 });
     if (command.files) {
       const where = mkdtempSync(path.join(folder, ".check-"));
       for (const [name, text] of Object.entries(command.files)) writeFileSync(path.join(where, name), text);

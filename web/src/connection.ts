@@ -29,6 +29,7 @@ export class Connection {
   private nextId = 1;
   private closed = false;
   private readonly pending = new Map<number, Pending>();
+  private files: Promise<unknown> = Promise.resolve(); // the last request of a file
   private part: { resolve: (part: FilePart) => void; reject: (error: Error) => void } | undefined; // that is awaited
 
   constructor(private readonly handlers: ConnectionHandlers) {}
@@ -90,8 +91,16 @@ export class Connection {
     });
   }
 
-  // Sends a command that makes a file, such as a video, and reads that file.
-  async requestFile(command: Command): Promise<{ name: string; content: Blob }> {
+  // Sends a command that makes a file, such as a video, and reads that file. A file replaces the one before, so that a second
+  // request waits for the first.
+  requestFile(command: Command): Promise<{ name: string; content: Blob }> {
+    const run = () => this.readFile(command);
+    const file = this.files.then(run, run);
+    this.files = file;
+    return file;
+  }
+
+  private async readFile(command: Command): Promise<{ name: string; content: Blob }> {
     const { file, name, type, size } = await this.request(command, "file");
     const parts: Uint8Array<ArrayBuffer>[] = [];
     for (let offset = 0; offset < size; ) {

@@ -40,6 +40,16 @@ export function replace(parent: Element, ...children: Child[]): void {
   append(parent, children);
 }
 
+const shownOptions = new WeakMap<HTMLSelectElement, string>();
+
+// The options of a list as [value, label, title]. Nothing changes if it has them already, so that an open list stays open.
+export function setOptions(select: HTMLSelectElement, options: readonly (readonly [string, string, string?])[]): void {
+  const key = JSON.stringify(options);
+  if (shownOptions.get(select) === key) return;
+  shownOptions.set(select, key);
+  replace(select, options.map(([value, label, title]) => h("option", { value, title: title || undefined }, label)));
+}
+
 let nextId = 0;
 export function uniqueId(prefix: string): string {
   return `${prefix}-${++nextId}`;

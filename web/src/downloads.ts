@@ -18,6 +18,8 @@ function dataAddress(file: Blob): Promise<string> {
 }
 
 export class Downloads {
+  private video = false; // its dialog is open
+
   constructor(
     private readonly session: Session,
     private readonly workspace: Workspace,
@@ -39,8 +41,9 @@ export class Downloads {
   // 32-bit floats, without exposure and tone mapping, with the metadata of the render.
   async saveExr(): Promise<void> {
     try {
+      const { name } = this;
       const { content } = await this.session.askFile({ do: "exr" });
-      download(content, `${this.name}.exr`);
+      download(content, `${name}.exr`);
     } catch (error) {
       notify((error as Error).message, "error");
     }
@@ -48,10 +51,17 @@ export class Downloads {
 
   async saveVideo(): Promise<void> {
     const { session } = this;
-    await this.workspace.save();
-    const open = session.currentRequest;
-    if (open && session.state && session.opened) await exportVideo(open, session.state, session.opened, (content, format) => download(content, `${this.name}.${format}`));
-    else notify("The program does not render yet", "error");
+    if (this.video) return;
+    this.video = true;
+    try {
+      await this.workspace.save();
+      const open = session.currentRequest;
+      const { name } = this;
+      if (open && session.state && session.opened) await exportVideo(open, session.state, session.opened, (content, format) => download(content, `${name}.${format}`));
+      else notify("The program does not render yet", "error");
+    } finally {
+      this.video = false;
+    }
   }
 
   async savePage(): Promise<void> {

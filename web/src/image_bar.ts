@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls above the image (output, frames, undo, download) and the line of facts below it.
-import { h, replace } from "./dom";
+import { h, replace, setOptions } from "./dom";
 import { icon, type IconName } from "./icons";
 import type { OutputDescription, SessionState, Statistics } from "./protocol";
 import type { Session } from "./session";
@@ -68,11 +68,11 @@ export class ImageBar {
     this.statistics = undefined;
     this.samples = 0;
     this.undo.disabled = this.redo.disabled = true;
-    replace(this.output);
+    setOptions(this.output, []);
   }
 
   showOutputs(outputs: readonly OutputDescription[]): void {
-    replace(this.output, outputs.map((output) => h("option", { value: output.name, title: output.help }, output.kind === "heat" ? `${output.name} (heat map)` : output.name)));
+    setOptions(this.output, outputs.map((output) => [output.name, output.kind === "heat" ? `${output.name} (heat map)` : output.name, output.help]));
   }
 
   showState(state: SessionState): void {

@@ -15,6 +15,7 @@ export class ImageView {
   private readonly overlay = h("div", { class: "image-overlay", hidden: true, role: "status" });
   private size = { width: 640, height: 360 }; // of the session
   private newest = 0;
+  private session = 0; // counts calls of reset()
   private shown = 0; // images
   private pixel: { x: number; y: number } | undefined;
   latest: ImageMessage | undefined;
@@ -41,12 +42,15 @@ export class ImageView {
     this.layout();
   }
 
-  // Images of a new session start with number 1.
+  // Images of a new session can start with number 1. Those of the one before are not shown any more, also if they are being
+  // decoded.
   reset(): void {
     this.newest = 0;
+    ++this.session;
   }
 
   async show(image: ImageMessage): Promise<void> {
+    const session = this.session;
     let bitmap: ImageBitmap;
     try {
       bitmap = await createImageBitmap(new Blob([image.file], { type: image.mime }), { colorSpaceConversion: "none" });
@@ -55,7 +59,7 @@ export class ImageView {
       return;
     }
     // Decoding takes different times; an older image must not replace a newer one.
-    if (image.number > this.newest) {
+    if (image.number > this.newest && session === this.session) {
       this.newest = image.number;
       this.latest = image;
       if (this.canvas.width !== bitmap.width || this.canvas.height !== bitmap.height) {
@@ -64,7 +68,10 @@ export class ImageView {
       }
       this.context.drawImage(bitmap, 0, 0);
       this.layout();
-      this.canvas.dataset["shown"] = String(++this.shown); // for tests
+      // For tests.
+      this.canvas.dataset["shown"] = String(++this.shown);
+      this.canvas.dataset["samples"] = String(image.samples);
+      this.canvas.dataset["state"] = image.complete ? "complete" : image.mime === "image/png" ? "at rest" : "moving";
     }
     bitmap.close();
     this.received(image.number);

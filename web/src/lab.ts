@@ -4,7 +4,7 @@
 import { api, type ApiError } from "./api";
 import { CameraControl } from "./camera_control";
 import type { Diagnostic } from "./diagnostic";
-import { menuButton, notify } from "./dialog";
+import { ask, menuButton, notify } from "./dialog";
 import { h, replace } from "./dom";
 import { Downloads } from "./downloads";
 import { EditorArea } from "./editor_pane";
@@ -45,6 +45,7 @@ export class Lab {
   private toldCamera = false;
   private wasConnected = false;
   private openings = 0; // the last one counts
+  private choosing = false; // the dialog is open, or about to be
 
   private readonly session: Session;
   private readonly workspace: Workspace;
@@ -337,13 +338,20 @@ export class Lab {
     const lesson = name ? this.lesson.find(name) : undefined;
     if (lesson) {
       if (this.lesson.lesson !== lesson) await this.openLesson(lesson);
+      else this.stay();
       return;
     }
     const program = address.get("program") ?? this.project!.program;
-    if (this.workspace.program?.name === program && !this.lesson.lesson) return;
+    if (this.workspace.program?.name === program && !this.lesson.lesson) return this.stay();
     const ofCourse = this.lesson.findProgram(program);
     if (ofCourse && !address.get("program")) await this.openLesson(ofCourse);
     else await this.openProgram(program, address.get("program") ? "" : this.project!.scene);
+  }
+
+  // What is being opened will not be shown.
+  private stay(): void {
+    ++this.openings;
+    this.lesson.choose(undefined);
   }
 
   private setAddress(name: string, value: string): void {
@@ -359,6 +367,7 @@ export class Lab {
 
   private async openLesson(lesson: Lesson): Promise<void> {
     const opening = ++this.openings;
+    this.lesson.choose(lesson);
     await this.workspace.save();
     // The list may be older than the copy.
     try {
@@ -368,7 +377,10 @@ export class Lab {
       // The connection reports it.
     }
     const current = this.lesson.find(lesson.name) ?? lesson;
-    if (!(await this.load(current.copied ? current.copy : current.program, "", opening))) return;
+    if (!(await this.load(current.copied ? current.copy : current.program, "", opening))) {
+      if (opening === this.openings) this.lesson.choose(undefined);
+      return;
+    }
     this.workspace.copyTo = current.copy;
     this.setAddress("lesson", current.name);
     await this.showLesson(current);
@@ -398,23 +410,45 @@ export class Lab {
     try {
       await this.workspace.save();
       await api.copyProgram(lesson.program, lesson.copy, true);
+      this.workspace.discard();
       await this.openLesson(lesson);
     } catch (error) {
       notify((error as Error).message, "error");
     }
   }
 
+  // Saves all edits, and asks whether those that cannot be saved are discarded. Returns false if they are not.
+  private async mayLeave(opening: number): Promise<boolean> {
+    const { workspace } = this;
+    if (await workspace.finish()) return true;
+    if (opening !== this.openings) return false; // the program that is opened instead asks
+    const unsaved = workspace.files.filter((file) => file.status !== "saved");
+    const answer = await ask(
+      "Edits are not saved",
+      unsaved.map((file) => h("p", {}, `${file.path}${file.message && `: ${file.message}`}`)),
+      [
+        { label: "Discard the edits", value: true },
+        { label: "Stay here", value: false, primary: true },
+      ],
+    );
+    if (answer) workspace.discard();
+    return answer === true;
+  }
+
   // Returns false if that failed, or if the user has opened something else in the meantime.
   private async load(name: string, scene: string, opening: number): Promise<boolean> {
-    await this.workspace.save();
     let program;
-    try {
-      program = await api.program(name);
-    } catch (error) {
-      notify(`${name}: ${(error as Error).message}`, "error");
-      return false;
-    }
-    if (opening !== this.openings) return false;
+    do {
+      // The user can edit while the program is read.
+      if (!(await this.mayLeave(opening))) return false;
+      try {
+        program = await api.program(name);
+      } catch (error) {
+        notify(`${name}: ${(error as Error).message}`, "error");
+        return false;
+      }
+      if (opening !== this.openings) return false;
+    } while (this.workspace.status !== "saved");
     this.diagnostics = program.diagnostics;
     this.outdated = false;
     this.toldCamera = false;
@@ -439,13 +473,17 @@ export class Lab {
   }
 
   private async choose(): Promise<void> {
+    if (this.choosing) return;
+    this.choosing = true;
+    let choice;
     try {
       await this.loadLists();
+      choice = await chooseProgram(this.programs, this.lessons, baseName(this.project?.folder ?? "the project"));
     } catch (error) {
       notify((error as Error).message, "error");
-      return;
+    } finally {
+      this.choosing = false;
     }
-    const choice = await chooseProgram(this.programs, this.lessons, baseName(this.project?.folder ?? "the project"));
     if (!choice) return;
     if (choice.kind === "program") await this.openProgram(choice.name);
     else if (choice.kind === "lesson") await this.openLesson(choice.lesson);
@@ -477,11 +515,16 @@ export class Lab {
   }
 
   private async setScene(scene: string): Promise<void> {
-    const before = this.session.request?.scene ?? "";
+    if (!this.session.request) {
+      notify("No program is open yet", "error");
+      return;
+    }
+    const before = this.session.request.scene;
     const message = await this.session.reopen({ scene, camera: undefined });
     if (message !== undefined) {
       notify(`${scene || "Scene of the program"}: ${message}`, "error");
-      if (scene !== before) await this.session.reopen({ scene: before, camera: undefined });
+      // Unless the user has chosen another one in the meantime.
+      if (scene !== before && this.session.request?.scene === scene) await this.session.reopen({ scene: before, camera: undefined });
     }
     this.showScenes();
   }

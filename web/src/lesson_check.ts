@@ -78,6 +78,11 @@ class Renderer {
     this.link.close();
   }
 
+  cancel(): void {
+    this.stop("The check was canceled");
+    this.close();
+  }
+
   private imageAfter(command: Command): Promise<ImageMessage> {
     return new Promise((resolve, reject) => {
       const timer = setTimeout(() => this.stop("The render took too long"), kTimeout);
@@ -139,9 +144,12 @@ async function decode(image: ImageMessage): Promise<{ bitmap: ImageBitmap; data:
 }
 
 // `mine` and `original`: files by name in the folder.
-export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, string>, original: ReadonlyMap<string, string>, main: string): Promise<CheckResult> {
+export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, string>, original: ReadonlyMap<string, string>, main: string, signal: AbortSignal): Promise<CheckResult> {
   const renderer = new Renderer();
+  const cancel = () => renderer.cancel();
+  signal.addEventListener("abort", cancel);
   try {
+    signal.throwIfAborted();
     const solution = solutionFiles(original, main, task);
     await renderer.connect();
     const run = async (files: ReadonlyMap<string, string>) => {
@@ -164,6 +172,7 @@ export async function checkTask(task: LessonTask, mine: ReadonlyMap<string, stri
   } catch (error) {
     return { passed: false, message: (error as Error).message };
   } finally {
+    signal.removeEventListener("abort", cancel);
     renderer.close();
   }
 }

@@ -2,7 +2,7 @@
 // The course: the text of a lesson, its tasks with checks, and the progress that this browser keeps.
 import { api } from "./api";
 import { ask, notify } from "./dialog";
-import { h, replace } from "./dom";
+import { h, replace, setOptions } from "./dom";
 import { type CheckResult, checkTask } from "./lesson_check";
 import { icon } from "./icons";
 import { kLessonTasks, type LessonTask, solutionFiles } from "./lesson_tasks";
@@ -62,7 +62,8 @@ export class LessonPanel {
   private readonly progress = stored<Progress>("progress", {});
   private lessons: readonly Lesson[] = [];
   private current: Lesson | undefined;
-  private checking = false;
+  private chosen: Lesson | undefined; // that is being opened
+  private running: AbortController | undefined; // of the check of a task
 
   constructor(private readonly host: LessonHost) {
     this.select.addEventListener("change", () => {
@@ -96,8 +97,16 @@ export class LessonPanel {
     return ofProgram.find((lesson) => lesson.program.endsWith(`/${lesson.name}>`)) ?? ofProgram[0];
   }
 
+  // The list shows the lesson that is being opened; undefined: the open one.
+  choose(lesson: Lesson | undefined): void {
+    this.chosen = lesson;
+    this.showList();
+  }
+
   async show(lesson: Lesson | undefined): Promise<void> {
     this.current = lesson;
+    this.chosen = undefined;
+    this.running?.abort();
     this.showList();
     if (!lesson) return;
     replace(this.body, h("p", { class: "empty" }, "Loading…"));
@@ -161,17 +170,18 @@ export class LessonPanel {
     };
     let all = 0;
     let finished = 0;
-    replace(
+    setOptions(
       this.select,
       this.lessons.map((lesson) => {
         const { count, done } = state(lesson);
         all += count;
         finished += done;
         const mark = count > 0 && done === count ? " ✓" : done > 0 ? ` ${done}/${count}` : "";
-        return h("option", { value: lesson.name }, `${lesson.number} ${lesson.title}${mark}`);
+        return [lesson.name, `${lesson.number} ${lesson.title}${mark}`];
       }),
     );
-    if (this.current) this.select.value = this.current.name;
+    const shown = this.chosen ?? this.current;
+    if (shown) this.select.value = shown.name;
     this.summary.textContent = `${finished} of ${all} tasks`;
     this.summary.title = "Tasks that are done in this browser";
   }
@@ -186,15 +196,14 @@ export class LessonPanel {
     const hint = h("p", { class: "task-hint", hidden: true }, inlineMarkdown(task.hint));
     const element = h("div", { class: "task", dataset: { task: task.id } });
     const setDone = () => element.classList.toggle("done", this.doneTasks(lesson).has(task.id));
-    const check = h("button", { type: "button", class: "primary" }, "Check");
+    const check = h("button", { type: "button", class: "primary task-check" }, "Check");
     check.addEventListener("click", async () => {
-      if (this.checking) return;
-      this.checking = true;
-      check.disabled = true;
+      const running = (this.running = new AbortController());
+      this.enableChecks(false);
       replace(result, h("p", {}, "Rendering your program and the solution…"));
-      const outcome = await this.check(lesson, task);
-      this.checking = false;
-      check.disabled = false;
+      const outcome = await this.check(lesson, task, running.signal);
+      if (running.signal.aborted) return; // another lesson is shown
+      this.enableChecks(true);
       if (outcome.passed) this.markDone(lesson, task);
       setDone();
       this.showResult(result, outcome);
@@ -217,14 +226,19 @@ export class LessonPanel {
     return element;
   }
 
-  private async check(lesson: Lesson, task: LessonTask): Promise<CheckResult> {
+  // One check runs at a time.
+  private enableChecks(on: boolean): void {
+    for (const button of this.body.querySelectorAll<HTMLButtonElement>(".task-check")) button.disabled = !on;
+  }
+
+  private async check(lesson: Lesson, task: LessonTask, signal: AbortSignal): Promise<CheckResult> {
     const { workspace } = this.host;
     const program = workspace.program;
     if (!program || (program.name !== lesson.copy && program.name !== lesson.program)) return { passed: false, message: "Another program is open. Choose the lesson again." };
     try {
       const original = await api.program(lesson.program);
       const mine = new Map(workspace.files.map((file) => [baseName(file.path), workspace.textOf(file)]));
-      return await checkTask(task, mine, filesOf(original), baseName(original.main));
+      return await checkTask(task, mine, filesOf(original), baseName(original.main), signal);
     } catch (error) {
       return { passed: false, message: (error as Error).message };
     }
@@ -264,6 +278,7 @@ export class LessonPanel {
     if (!answer) return;
     try {
       const original = await api.program(lesson.program);
+      if (this.current !== lesson) return; // another one was opened
       const originals = filesOf(original);
       const solution = solutionFiles(originals, baseName(original.main), task);
       for (const file of workspace.files) {

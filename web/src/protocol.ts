@@ -157,6 +157,7 @@ export interface Picked {
 
 interface EventBodies {
   worker: { state: WorkerState; message: string; restarts: number };
+  opening: { number: number };
   stage: { text: string };
   opened: Opened;
   state: SessionState;

@@ -29,6 +29,12 @@ export interface SessionHandlers {
   onMessage: (message: string, kind: "info" | "error") => void;
 }
 
+// Commands that are sent often, or that have no answer.
+const kSilent: ReadonlySet<string> = new Set(["received", "restart", "orbit", "pan", "zoom", "fly", "endDrag"]);
+
+// Events about the open program.
+const kOfProgram: ReadonlySet<EventName> = new Set(["stage", "opened", "state", "diagnostics", "graph", "statistics", "restarted", "reloaded", "printed", "error"]);
+
 export class Session {
   connection: ConnectionState = "connecting";
   connectionMessage = "";
@@ -44,7 +50,8 @@ export class Session {
   private current: OpenRequest | undefined;
   private sets = new Map<string, ParameterValue>();
   private scheduled = false;
-  private opens = 0;
+  private opens = 0; // number of the last `open`
+  private opening = 0; // the one that the worker executes, or has executed
 
   constructor(private readonly handlers: SessionHandlers) {
     this.link = new Connection({
@@ -59,6 +66,10 @@ export class Session {
       },
       onEvent: (event) => this.onEvent(event),
       onImage: (image) => {
+        if (this.isStale) {
+          this.send({ do: "received", image: image.number });
+          return;
+        }
         this.hasImage = true;
         this.stage = "";
         handlers.onImage(image);
@@ -96,8 +107,16 @@ export class Session {
     return this.current;
   }
 
+  // An error of the command becomes a message.
   send(command: Command): void {
-    this.link.send(command);
+    if (kSilent.has(command.do)) {
+      this.link.send(command);
+      return;
+    }
+    this.link.request(command, "done").catch((error: Error) => {
+      // Otherwise the state of the session is shown already.
+      if (this.link.isOpen && this.worker?.state === "started" && this.state) this.handlers.onMessage(error.message, "error");
+    });
   }
 
   ask<K extends EventName>(command: Command, wanted: K): Promise<EventOf<K>> {
@@ -149,12 +168,13 @@ export class Session {
     this.handlers.onStatus();
     const generation = ++this.opens;
     try {
-      await this.link.request({ do: "open", ...request }, "done");
+      await this.link.request({ do: "open", ...request, number: generation }, "done");
       return undefined;
     } catch (error) {
+      if (generation !== this.opens) return undefined; // a later one replaces it
       // A lost connection and the end of the worker have states of their own.
       const running = this.link.isOpen && this.worker?.state !== "crashed" && this.worker?.state !== "hung";
-      if (generation === this.opens && running) {
+      if (running) {
         this.failure = (error as Error).message;
         this.stage = "";
         this.handlers.onStatus();
@@ -163,8 +183,15 @@ export class Session {
     }
   }
 
+  // What the worker sends is about a program that was open before.
+  private get isStale(): boolean {
+    return this.opening !== this.opens;
+  }
+
   private onEvent(event: ServerEvent): void {
     const { handlers } = this;
+    if (event.event === "opening") this.opening = event.number;
+    if (this.isStale && kOfProgram.has(event.event) && event.id === undefined) return;
     switch (event.event) {
       case "worker":
         this.worker = { state: event.state, message: event.message, restarts: event.restarts };

@@ -14,6 +14,7 @@ export class TabList {
   readonly element: HTMLElement;
   private tabs: readonly Tab[] = [];
   private current = "";
+  private buttons: HTMLButtonElement[] = [];
   private readonly prefix = uniqueId("tab");
 
   constructor(
@@ -31,37 +32,28 @@ export class TabList {
   }
 
   show(tabs: readonly Tab[], selected: string): void {
-    const hadFocus = this.element.contains(document.activeElement);
+    // The element of a tab that the user is pressing is not replaced.
+    if (tabs.map((tab) => tab.id).join() !== this.tabs.map((tab) => tab.id).join()) {
+      const hadFocus = this.element.contains(document.activeElement);
+      this.buttons = tabs.map((tab) => h("button", { id: `${this.prefix}-${tab.id}`, role: "tab", type: "button", "aria-controls": this.panel.id, dataset: { tab: tab.id }, onclick: () => this.select(tab.id) }));
+      replace(this.element, this.buttons);
+      if (hadFocus) this.buttons[tabs.findIndex((tab) => tab.id === selected)]?.focus();
+    }
     this.tabs = tabs;
     this.current = selected;
-    replace(
-      this.element,
-      tabs.map((tab) => {
-        const active = tab.id === selected;
-        const marks: Record<string, string> = { error: "has errors", warning: "has warnings", changed: "not saved" };
-        return h(
-          "button",
-          {
-            class: `tab${tab.mark ? ` ${tab.mark}` : ""}`,
-            id: `${this.prefix}-${tab.id}`,
-            role: "tab",
-            type: "button",
-            title: tab.hint,
-            "aria-selected": String(active),
-            "aria-controls": this.panel.id,
-            tabindex: active ? 0 : -1,
-            dataset: { tab: tab.id },
-            onclick: () => this.select(tab.id),
-          },
-          tab.title,
-          tab.badge !== undefined && h("span", { class: "badge" }, tab.badge),
-          tab.mark && h("span", { class: "mark", role: "img", "aria-label": marks[tab.mark] }),
-        );
-      }),
-    );
+    tabs.forEach((tab, i) => this.update(this.buttons[i]!, tab));
     this.panel.setAttribute("aria-labelledby", `${this.prefix}-${selected}`);
-    if (hadFocus) this.element.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     this.element.querySelector<HTMLElement>("[aria-selected=true]")?.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+
+  private update(button: HTMLButtonElement, tab: Tab): void {
+    const active = tab.id === this.current;
+    const marks: Record<string, string> = { error: "has errors", warning: "has warnings", changed: "not saved" };
+    button.className = `tab${tab.mark ? ` ${tab.mark}` : ""}`;
+    button.title = tab.hint ?? "";
+    button.setAttribute("aria-selected", String(active));
+    button.tabIndex = active ? 0 : -1;
+    replace(button, tab.title, tab.badge !== undefined && h("span", { class: "badge" }, tab.badge), tab.mark && h("span", { class: "mark", role: "img", "aria-label": marks[tab.mark] }));
   }
 
   private select(id: string): void {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the image shows: scene, size, samples, exposure, tone map, camera, and the frame of an animated scene.
-import { h, replace } from "./dom";
+import { h, replace, setOptions } from "./dom";
 import type { Command, Opened, SessionState } from "./protocol";
 
 export interface ViewHost {
@@ -88,23 +88,23 @@ export class ViewPanel {
     this.programScene = ofProgram;
     const names = [...new Set([...this.scenes, ...(this.sceneNow ? [this.sceneNow] : [])])].filter((name) => name !== ofProgram).sort();
     const own = this.programScene ? `${this.programScene.replace(/^.*\//, "")} (of the program)` : "Default scene";
-    replace(this.scene, h("option", { value: "" }, own), names.map((name) => h("option", { value: name }, name)));
+    setOptions(this.scene, [["", own], ...names.map((name) => [name, name] as const)]);
     this.scene.value = this.sceneNow === ofProgram ? "" : this.sceneNow;
   }
 
   showOpened(opened: Opened): void {
     this.frameRow.hidden = !opened.animated;
     this.frame.max = String(Math.max(1, Math.ceil(opened.lastFrame)));
-    replace(this.camera, h("option", { value: "" }, "first"), opened.cameras.map((name) => h("option", { value: name }, name)));
+    setOptions(this.camera, [["", "first"], ...opened.cameras.map((name) => [name, name] as const)]);
   }
 
   showState(state: SessionState, usesCamera: boolean): void {
     const key = `${state.width}x${state.height}`;
     const sizes = kSizes.some(([width, height]) => `${width}x${height}` === key) ? kSizes : [[state.width, state.height] as [number, number], ...kSizes];
-    replace(this.size, sizes.map(([width, height]) => h("option", { value: `${width}x${height}` }, `${width} × ${height}`)));
+    setOptions(this.size, sizes.map(([width, height]) => [`${width}x${height}`, `${width} × ${height}`]));
     this.size.value = key;
     const counts = kSamples.includes(state.samples) ? kSamples : [state.samples, ...kSamples].sort((a, b) => a - b);
-    replace(this.samples, counts.map((count) => h("option", { value: count }, String(count))));
+    setOptions(this.samples, counts.map((count) => [String(count), String(count)]));
     this.samples.value = String(state.samples);
     this.samplesRow.hidden = state.frames;
     this.tonemap.value = state.tonemap;

@@ -167,26 +167,46 @@ export class Workspace {
   save(): Promise<void> {
     clearTimeout(this.timer);
     for (const file of this.files) if (file.status === "failed" || (file.status === "conflict" && !file.merging)) file.status = "changed";
-    const generation = this.generation;
-    this.saving = this.saving.then(async () => {
-      if (generation !== this.generation) return;
+    return this.afterSaving(async (generation) => {
       const copies = this.program?.builtIn === true && this.files.some((file) => file.status === "changed");
       if (copies && !(await this.makeCopy())) return;
       for (const file of this.files) if (file.status === "changed" && generation === this.generation) await this.saveFile(file);
       // The session opens the copy with the edits.
       if (copies && generation === this.generation) this.handlers.onRenamed(this.program!.name);
     });
-    return this.saving;
+  }
+
+  // Saves until no edit is left, also not one that the user makes in the meantime. Returns false if an edit cannot be saved.
+  async finish(): Promise<boolean> {
+    do await this.save();
+    while (this.status === "changed" || this.status === "saving");
+    return this.status === "saved";
+  }
+
+  // Forgets all edits that are not saved.
+  discard(): void {
+    clearTimeout(this.timer);
+    for (const file of this.files) file.status = "saved";
+    this.handlers.onStatus();
   }
 
   // Copies a built-in program into the project, so that files can be added to it. Returns false if it stays built-in.
   async ensureCopy(): Promise<boolean> {
-    if (!this.program?.builtIn) return this.program !== undefined;
-    await this.saving;
-    if (!this.program.builtIn) return true;
-    if (!(await this.makeCopy())) return false;
-    this.handlers.onRenamed(this.program.name);
-    return true;
+    await this.afterSaving(async (generation) => {
+      if (!this.program?.builtIn || !(await this.makeCopy())) return;
+      if (generation === this.generation) this.handlers.onRenamed(this.program.name);
+    });
+    return this.program !== undefined && !this.program.builtIn;
+  }
+
+  // Runs `step` when all saves before have ended, unless another program was opened by then.
+  private afterSaving(step: (generation: number) => Promise<void>): Promise<void> {
+    const generation = this.generation;
+    const run = async () => {
+      if (generation === this.generation) await step(generation);
+    };
+    this.saving = this.saving.then(run, run);
+    return this.saving;
   }
 
   // Reads the files that have changed on disk.
@@ -295,6 +315,7 @@ export class Workspace {
 
   private async makeCopy(): Promise<boolean> {
     const program = this.program!;
+    const generation = this.generation;
     let folder: string | undefined = this.copyTo;
     for (;;) {
       if (!folder) return false;
@@ -321,6 +342,7 @@ export class Workspace {
       this.fail((error as Error).message);
       return false;
     }
+    if (generation !== this.generation) return false; // another program was opened
     const prefix = `${program.name}/`;
     for (const file of this.files) {
       const name = file.path.startsWith(prefix) ? file.path.slice(prefix.length) : baseName(file.path);

@@ -83,7 +83,7 @@ constexpr Row kVariables[] = {
     {"QUINTET_VALIDATE", "1 enables the validation layers of Vulkan; their messages appear as warnings."},
     {"QUINTET_CACHE_DIR", "Folder of compiled shaders and pipelines."},
     {"QUINTET_NO_SHIPPED_SHADERS", "1 compiles all shaders from GLSL, also those that the binary contains."},
-    {"QUINTET_INCLUDE_ROOTS", "Folders, separated by ':', outside of which programs include no files."},
+    {"QUINTET_INCLUDE_ROOTS", "Folders, separated by ':', outside of which programs and scenes read no files."},
     {"QUINTET_SHADER_PATH", "Folder that replaces the built-in shader library."},
     {"QUINTET_NO_DRIVER_WORKAROUNDS", "1 keeps the variables of drivers unchanged."},
     {"NO_COLOR", "If it is not empty, the output has no colors."},

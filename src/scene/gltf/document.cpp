@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "scene/gltf/extensions.h"
@@ -364,6 +365,7 @@ std::filesystem::path Document::fileOfUri(std::string_view uri, std::string_view
   if (!allowExternal && leavesFolder(file, name))
     fail(location, fmt::format("{} is outside of the folder of the file", name), Remedy::allowExternal);
   const std::filesystem::path path = pathOfUri(uri);
+  if (!FileRoots::fromEnvironment().allows(path)) fail(location, fmt::format("{} {}", name, kOutsideOfRoots));
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) fail(location, fmt::format("{} does not exist", name));

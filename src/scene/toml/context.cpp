@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "base/suggestion.h"
 #include "io/codec.h"
 #include "io/color.h"
@@ -32,6 +33,7 @@ void SceneTomlContext::checkName(const TomlValue& at, const std::string& name) c
 std::filesystem::path SceneTomlContext::resolvePath(const TomlValue& at, const std::string& path) const {
   if (path.empty() || path.find('\0') != std::string::npos) fail(at, "the path is empty or contains a zero byte");
   const std::filesystem::path full = folder / path;
+  if (!FileRoots::fromEnvironment().allows(full)) fail(at, fmt::format("file '{}' {}", path, kOutsideOfRoots));
   std::error_code error;
   if (!std::filesystem::is_regular_file(full, error)) fail(at, fmt::format("file '{}' not found", full.string()));
   return full;

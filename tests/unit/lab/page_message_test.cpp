@@ -31,7 +31,7 @@ TEST(PageMessage, ReadsOpen) {
   const PageMessage message = parsed(
       R"({"do":"open","id":7,"program":"mine","scene":"a.glb","width":320,"height":200,"samples":9,
           "parameters":{"tint":[1,0.5,0],"on":true,"n":3,"image":"a.png"},"output":"depth","exposure":-1,"tonemap":"aces",
-          "frame":2.5,"camera":{"from":[0,1,4],"at":[0,0,0],"fov":30,"aperture":0.1,"focus":2},"seed":5})");
+          "frame":2.5,"camera":{"from":[0,1,4],"at":[0,0,0],"fov":30,"aperture":0.1,"focus":2},"seed":5,"number":12})");
   EXPECT_EQ(message.id, "7");
   const auto& open = std::get<OpenSession>(message.command);
   EXPECT_EQ(open.program, "mine");
@@ -49,6 +49,7 @@ TEST(PageMessage, ReadsOpen) {
   EXPECT_EQ(open.camera->verticalFov, 30.0f);
   EXPECT_EQ(open.camera->apertureRadius, 0.1f);
   EXPECT_EQ(open.seed, 5u);
+  EXPECT_EQ(open.number, 12u);
 }
 
 TEST(PageMessage, OpenNeedsOnlyAProgram) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Includes: the order of the search, and diagnostics for included and missing files.
 #include "shader/include_resolver.h"
+#include "base/file_roots.h"
 
 #include <cstdlib>
 
-#include "shader/include_roots.h"
 #include "shader_test_support.h"
 
 namespace quintet::shader {
@@ -158,10 +158,10 @@ TEST(Include, StaysInTheRootsOfTheEnvironment) {
   };
   for (const std::string& include : {std::string("../../outside.glsl"), outside.string(), std::string("link.glsl")}) {
     EXPECT_TRUE(compiles(include)) << include;
-    addIncludeRoot(folder.path() / "project");
+    addFileRoot(folder.path() / "project");
     EXPECT_FALSE(compiles(include)) << include;
     EXPECT_TRUE(compiles("../inside.glsl"));
-    addIncludeRoot(folder.path());
+    addFileRoot(folder.path());
     EXPECT_TRUE(compiles(include)) << "of several roots: " << include;
     ::unsetenv("QUINTET_INCLUDE_ROOTS");
   }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "scene/error_matcher.h"
 #include "scene/gltf/gltf.h"
 #include "scene/gltf_builder.h"
@@ -211,6 +213,33 @@ TEST(GltfUri, ReadsExternalFiles) {
   EXPECT_THAT(errorWith("file:///a.bin"), IsErrorAt("/buffers/0/uri", "data URI"));
   EXPECT_THAT(errorWith("up%00.bin"), IsErrorAt("/buffers/0/uri", "zero byte"));
   EXPECT_THAT(errorWith(""), IsErrorAt("/buffers/0/uri", "empty"));
+}
+
+TEST(GltfUri, FollowsNoLinkOutOfTheRoots) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "project");
+  writeFile(folder / "up.bin", builder.binary);
+  writeFile(folder / "project/inside.bin", builder.binary);
+  std::filesystem::create_symlink(folder / "up.bin", folder / "project/up.bin");
+  std::filesystem::create_symlink("inside.bin", folder / "project/link.bin");
+  Json json = Json::parse(builder.gltf());
+  const auto errorWith = [&](const std::string& uri) -> std::string {
+    json["buffers"][0]["uri"] = uri;
+    writeFile(folder / "project/scene.gltf", json.dump());
+    try {
+      scene::loadGltf(folder / "project/scene.gltf");
+    } catch (const FileError& error) {
+      return error.location() + ": " + error.problem();
+    }
+    return "";
+  };
+  EXPECT_EQ(errorWith("up.bin"), "");
+  addFileRoot(folder / "project");
+  EXPECT_THAT(errorWith("up.bin"), IsErrorAt("/buffers/0/uri", "outside of the project"));
+  EXPECT_EQ(errorWith("link.bin"), "");
+  ::unsetenv("QUINTET_INCLUDE_ROOTS");
 }
 
 TEST(GltfUri, ReadsFilesOutsideOfTheFolderOnRequest) {

@@ -4,10 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <stdlib.h>
+
 #include <map>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "io/codec.h"
 #include "scene/gltf_builder.h"
 #include "scene/toml/parse.h"
@@ -279,6 +282,43 @@ rotation = 90
   EXPECT_NEAR(s.environment.rotation, kPi / 2, 1e-6f);
   EXPECT_TRUE(parse("[environment]\nnone = true\n").environment.present);
   EXPECT_FALSE(parse("[environment]\ndefault = true\n").environment.image.empty());
+}
+
+TEST(SceneToml, ReadsNoFileOutsideOfTheRoots) {
+  TempFolder folder;
+  std::filesystem::create_directories(folder / "project/scenes");
+  writeFile(folder / "p.png", io::encodePng(io::makeImage(2, 3, 3, io::PixelType::u8, io::ColorEncoding::sRgb)));
+  writeFile(folder / "p.hdr", io::encodeHdr(io::makeImage(4, 2, 3, io::PixelType::f32, io::ColorEncoding::linear)));
+  GltfBuilder builder;
+  builder.addTriangle();
+  writeFile(folder / "t.glb", builder.glb());
+  for (const char* name : {"p.png", "p.hdr", "t.glb"}) {
+    std::filesystem::copy_file(folder / name, folder / "project" / name);
+    std::filesystem::create_symlink(folder / name, folder / "project/scenes" / name);
+  }
+  const auto errorOf = [&](const std::string& path) -> std::string {
+    const std::string quoted = "'" + path + "'\n", extension = std::filesystem::path(path).extension();
+    std::string text = "[[material]]\nname = 'a'\nbase_color_texture = " + quoted;
+    if (extension == ".hdr") text = "[environment]\nimage = " + quoted;
+    if (extension == ".glb") text = "[[file]]\nname = 'f'\npath = " + quoted;
+    try {
+      scene::parseSceneToml(text, folder / "project/scenes/x.scene.toml");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  for (const std::string name : {"p.png", "p.hdr", "t.glb"}) {
+    for (const std::string& path : {"../../" + name, (folder / name).string(), name}) {
+      EXPECT_EQ(errorOf(path), "none") << path;
+      addFileRoot(folder / "project");
+      EXPECT_THAT(errorOf(path), testing::HasSubstr("is outside of the project"));
+      EXPECT_THAT(errorOf("../../missing" + name), testing::HasSubstr("is outside of the project"))
+          << "the message does not reveal which files exist";
+      EXPECT_EQ(errorOf("../" + name), "none");
+      ::unsetenv("QUINTET_INCLUDE_ROOTS");
+    }
+  }
 }
 
 TEST(SceneToml, MakesThePartsOfFilesAvailable) {

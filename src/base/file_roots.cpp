@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shader/include_roots.h"
+#include "base/file_roots.h"
 
 #include <stdlib.h>
 
@@ -9,16 +9,16 @@
 
 #include "base/parse.h"
 
-namespace quintet::shader {
+namespace quintet {
 namespace {
 
-constexpr const char* kIncludeRoots = "QUINTET_INCLUDE_ROOTS";
+constexpr const char* kRootsVariable = "QUINTET_INCLUDE_ROOTS";
 
 }  // namespace
 
-IncludeRoots IncludeRoots::fromEnvironment() {
-  IncludeRoots roots;
-  const char* value = std::getenv(kIncludeRoots);
+FileRoots FileRoots::fromEnvironment() {
+  FileRoots roots;
+  const char* value = std::getenv(kRootsVariable);
   for (const std::string& folder : splitText(value ? value : "", ':')) {
     std::error_code error;
     if (!folder.empty()) roots.folders_.push_back(std::filesystem::weakly_canonical(folder, error));
@@ -26,7 +26,7 @@ IncludeRoots IncludeRoots::fromEnvironment() {
   return roots;
 }
 
-bool IncludeRoots::allows(const std::filesystem::path& file) const {
+bool FileRoots::allows(const std::filesystem::path& file) const {
   if (!limited()) return true;
   std::error_code error;
   const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
@@ -36,10 +36,10 @@ bool IncludeRoots::allows(const std::filesystem::path& file) const {
   });
 }
 
-void addIncludeRoot(const std::filesystem::path& folder) {
-  const char* value = std::getenv(kIncludeRoots);
+void addFileRoot(const std::filesystem::path& folder) {
+  const char* value = std::getenv(kRootsVariable);
   const std::string before = value ? value : "";
-  ::setenv(kIncludeRoots, (before.empty() ? folder.string() : before + ":" + folder.string()).c_str(), 1);
+  ::setenv(kRootsVariable, (before.empty() ? folder.string() : before + ":" + folder.string()).c_str(), 1);
 }
 
-}  // namespace quintet::shader
+}  // namespace quintet
