@@ -9,11 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "base/parallel.h"
 #include "chains.h"
 #include "check/modules/stack_check.h"
 #include "check/suppression.h"
-#include "spirv/shader_record.h"
 
 namespace quintet::layer {
 namespace {
@@ -34,18 +32,6 @@ shader::SpecializationValues valuesOf(const VkSpecializationInfo* info) {
     values[entry.constantID] = std::move(words);
   }
   return values;
-}
-
-spv::ExecutionModel modelOf(VkShaderStageFlagBits stage) {
-  using Model = spv::ExecutionModel;
-  switch (stage) {
-    case VK_SHADER_STAGE_RAYGEN_BIT_KHR: return Model::RayGenerationKHR;
-    case VK_SHADER_STAGE_MISS_BIT_KHR: return Model::MissKHR;
-    case VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR: return Model::ClosestHitKHR;
-    case VK_SHADER_STAGE_ANY_HIT_BIT_KHR: return Model::AnyHitKHR;
-    case VK_SHADER_STAGE_INTERSECTION_BIT_KHR: return Model::IntersectionKHR;
-    default: return Model::CallableKHR;
-  }
 }
 
 std::string identifierOf(const std::uint8_t* bytes, std::uint32_t count) {
@@ -308,42 +294,15 @@ void Device::deliverAll() {
 void Device::report(std::vector<Diagnostic> diagnostics, LinkedPipeline& pipeline) {
   const MessageObject object{VK_OBJECT_TYPE_PIPELINE, numberOf(pipeline.handle),
                              nameOf(VK_OBJECT_TYPE_PIPELINE, numberOf(pipeline.handle))};
-  instance->messages.report(diagnostics, object, pipeline.sources);
+  instance->messages.report(diagnostics, object, pipeline.stages.sources);
 }
 
 // Runs on the worker's thread.
 void Device::link(LinkedPipeline& pipeline) const {
   const PipelineCopy& copy = pipeline.copy;
-  std::vector<std::string> names, problems(copy.stages.size());
-  for (std::size_t i = 0; i < copy.stages.size(); ++i) {
-    const StageCopy& stage = copy.stages[i];
-    problems[i] = "its SPIR-V is unknown";
-    std::optional<check::ModuleSummary> summary;
-    if (stage.words) summary = check::summarize(*stage.words, problems[i]);
-    std::string name = stage.name;
-    if (name.empty() && summary && summary->sources.size() == 1) name = summary->sources.begin()->first;
-    if (name.empty()) name = fmt::format("stage {}", i);
-    if (stage.entryPoint != "main") name += fmt::format(" ({})", stage.entryPoint);
-    // Two stages can be the same entry point with different constants.
-    if (std::ranges::find(names, name) != names.end()) name += fmt::format(" (stage {})", i);
-    names.push_back(name);
-    if (!summary) continue;
-    pipeline.sources.insert(summary->sources.begin(), summary->sources.end());
-    problems[i].clear();
-  }
-  pipeline.modules.resize(copy.stages.size());
-  pipeline.recordBytes.resize(copy.stages.size());
-  parallelFor(copy.stages.size(), [&](std::size_t i) {
-    const StageCopy& stage = copy.stages[i];
-    check::ModuleStage& module = pipeline.modules[i];
-    if (problems[i].empty())
-      module = check::stageModule(names[i], *stage.words, {modelOf(stage.stage), stage.entryPoint}, stage.values);
-    else
-      module = {names[i], *check::stageOf(modelOf(stage.stage)), {}, problems[i]};
-    if (const auto read = spirv::Module::read(module.spirv)) pipeline.recordBytes[i] = spirv::shaderRecordBytes(*read);
-  });
+  pipeline.stages = modulesOf(copy.stages);
   std::vector<Diagnostic> notes;
-  for (const check::ModuleStage& module : pipeline.modules) {
+  for (const check::ModuleStage& module : pipeline.stages.modules) {
     if (module.problem.empty()) continue;
     Diagnostic d;
     d.severity = Severity::note;
@@ -359,14 +318,16 @@ void Device::link(LinkedPipeline& pipeline) const {
   groups.declaredRecursion = std::max(1u, copy.depth);
   for (std::size_t g = 0; g < copy.groups.size(); ++g) {
     const GroupCopy& group = copy.groups[g];
-    const auto nameAt = [&](const std::optional<std::size_t>& stage) { return stage ? names[*stage] : std::string(); };
+    const auto nameAt = [&](const std::optional<std::size_t>& stage) {
+      return stage ? pipeline.stages.of(*stage).name : std::string();
+    };
     if (group.type != VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR) {
       program::HitGroup hit;
       hit.name = std::to_string(g);
       hit.shaders[""] = {nameAt(group.closestHit), nameAt(group.anyHit), nameAt(group.intersection), {}, 0};
       groups.hitGroups.push_back(std::move(hit));
     } else if (group.general) {
-      const std::string& name = names[*group.general];
+      const std::string& name = pipeline.stages.of(*group.general).name;
       switch (copy.stages[*group.general].stage) {
         case VK_SHADER_STAGE_RAYGEN_BIT_KHR: groups.rayGenerations.push_back(name); break;
         case VK_SHADER_STAGE_MISS_BIT_KHR: groups.misses.push_back({{}, name, {}, 0}); break;
@@ -374,8 +335,8 @@ void Device::link(LinkedPipeline& pipeline) const {
       }
     }
   }
-  pipeline.result = check::checkModules(groups, pipeline.modules, limits);
-  check::Suppressions(pipeline.sources).apply(pipeline.result.diagnostics);
+  pipeline.result = check::checkModules(check::withoutRepeatedGroups(groups), pipeline.stages.modules, limits);
+  check::Suppressions(pipeline.stages.sources).apply(pipeline.result.diagnostics);
   std::ranges::move(notes, std::back_inserter(pipeline.result.diagnostics));
 }
 
@@ -389,7 +350,7 @@ void Device::checkStackSize(VkCommandBuffer commands, std::uint32_t bytes) {
     for (std::size_t g = 0; g < bound->copy.groups.size(); ++g) {
       const GroupCopy& group = bound->copy.groups[g];
       const auto add = [&](const std::optional<std::size_t>& index, VkShaderGroupShaderKHR kind) {
-        if (!index || bound->modules[*index].name != stage) return;
+        if (!index || bound->stages.of(*index).name != stage) return;
         const std::uint64_t size =
             table.GetRayTracingShaderGroupStackSizeKHR(handle, bound->handle, static_cast<std::uint32_t>(g), kind);
         smallest = std::min(smallest.value_or(size), size);

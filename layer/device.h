@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "check/check.h"
-#include "check/modules/stage_module.h"
 #include "check/modules/table_check.h"
 #include "instance.h"
+#include "stage_modules.h"
 
 namespace quintet::layer {
 
@@ -56,11 +56,9 @@ struct LinkedPipeline {
   std::shared_ptr<LinkWorker::Task> task;  // null for a library
 
   // Results of the task.
-  std::vector<check::ModuleStage> modules;
+  StageModules stages;
   check::PipelineGroups groups;  // the order of the tables is unknown
   check::CheckResult result;
-  std::map<std::string, std::string> sources;
-  std::vector<std::uint64_t> recordBytes;  // by stage
 
   std::mutex mutex;
   bool delivered = false;

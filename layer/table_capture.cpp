@@ -437,7 +437,8 @@ const std::vector<check::TableGroup>& TableCapture::groupsOf(LinkedPipeline& pip
     added.handle.assign(handles.begin() + static_cast<std::ptrdiff_t>(g * bytes),
                         handles.begin() + static_cast<std::ptrdiff_t>((g + 1) * bytes));
     for (const auto& stage : {group.general, group.closestHit, group.anyHit, group.intersection})
-      if (stage) added.recordBytes = std::max(added.recordBytes, pipeline.recordBytes[*stage]);
+      if (stage)
+        added.recordBytes = std::max(added.recordBytes, pipeline.stages.recordBytes[pipeline.stages.ofStage[*stage]]);
     groups.push_back(std::move(added));
   }
   const std::scoped_lock lock(mutex_);
@@ -453,12 +454,10 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   const std::vector<check::TableGroup>& table = groupsOf(pipeline);
   check::PipelineGroups groups = pipeline.groups;
   std::string key = fmt::format("{:#x}", numberOf(pipeline.handle));
-  // The position of a group in PipelineGroups: the lists have the groups of one kind in their order.
-  const auto position = [&](std::size_t group) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(group),
-                              [&](const check::TableGroup& other) { return other.kind == table[group].kind; }));
-  };
+  // The positions of the groups in PipelineGroups: the lists have the groups of one kind in their order.
+  std::vector<std::size_t> positions;
+  std::array<std::size_t, check::kTableKinds> counts{};
+  for (const check::TableGroup& group : table) positions.push_back(counts[static_cast<std::size_t>(group.kind)]++);
   const auto select = [&](check::TableKind kind, auto& list) {
     const auto all = list;
     list.clear();
@@ -466,7 +465,7 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
     for (const auto& record : found.records[static_cast<std::size_t>(kind)]) {
       list.emplace_back();
       key += record ? fmt::format(" {}", *record) : " -";
-      if (record && position(*record) < all.size()) list.back() = all[position(*record)];
+      if (record && positions[*record] < all.size()) list.back() = all[positions[*record]];
     }
   };
   select(check::TableKind::miss, groups.misses);
@@ -489,16 +488,17 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
         list, [&](const Diagnostic& k) { return k.id == d.id && k.file == d.file && k.line == d.line; });
   };
   // A table need not reach all stages: a pipeline can be for more than one scene.
-  std::vector<Diagnostic> added = check::checkModules(states.front(), pipeline.modules, device_.limits).diagnostics;
+  std::vector<Diagnostic> added =
+      check::checkModules(states.front(), pipeline.stages.modules, device_.limits).diagnostics;
   std::erase_if(added, [&](const Diagnostic& d) {
     return d.id == kUnreachable || d.severity == Severity::note || has(pipeline.result.diagnostics, d);
   });
   // What holds for only one of several possible states of the instances is not certain.
   for (std::size_t i = 1; i < states.size() && !added.empty(); ++i) {
-    const auto other = check::checkModules(states[i], pipeline.modules, device_.limits).diagnostics;
+    const auto other = check::checkModules(states[i], pipeline.stages.modules, device_.limits).diagnostics;
     std::erase_if(added, [&](const Diagnostic& d) { return !has(other, d); });
   }
-  check::Suppressions(pipeline.sources).apply(added);
+  check::Suppressions(pipeline.stages.sources).apply(added);
   device_.report(std::move(added), pipeline);
 }
 

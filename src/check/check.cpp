@@ -26,22 +26,24 @@ constexpr std::array<std::string_view, 10> kWrongArgument{"Q302", "Q501", "Q502"
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
 
-bool hasAnyHit(const PipelineGraph& graph, const std::string& intersection) {
-  return std::ranges::any_of(graph.groups.hitGroups, [&](const program::HitGroup& group) {
-    return std::ranges::any_of(group.shaders, [&](const auto& entry) {
-      return entry.second.intersection == intersection && !entry.second.anyHit.empty();
-    });
-  });
+// The intersection shaders of hit groups with an any-hit shader.
+std::set<std::string> intersectionsWithAnyHit(const PipelineGraph& graph) {
+  std::set<std::string> files;
+  for (const program::HitGroup& group : graph.groups.hitGroups)
+    for (const auto& [ray, shaders] : group.shaders)
+      if (!shaders.anyHit.empty()) files.insert(shaders.intersection);
+  return files;
 }
 
 // A null `program` for raw modules.
 void runRulesWithinStages(const CheckInput& input, const ProgramStageContext* program, Report& report) {
   const PipelineGraph& graph = input.graph;
+  const std::set<std::string> withAnyHit = intersectionsWithAnyHit(graph);
   std::vector<std::vector<Diagnostic>> found(graph.stages.size());
   parallelFor(graph.stages.size(), [&](std::size_t i) {
     const PipelineStage& stage = graph.stages[i];
     if (!stage.facts) return;
-    const StageContext context{graph.usesLibrary, hasAnyHit(graph, stage.file), input.limits.defects};
+    const StageContext context{graph.usesLibrary, withAnyHit.contains(stage.file), input.limits.defects};
     found[i] = checkStage(stage.facts->module(), context);
     if (program) std::ranges::move(checkProgramStage(stage.facts->module(), *program), std::back_inserter(found[i]));
   });

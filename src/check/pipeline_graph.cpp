@@ -26,6 +26,14 @@ std::string_view roleName(Role role) {
   return "callable";
 }
 
+// The sites of a stage; the list is in the order of the stages.
+template <class Site>
+std::span<const Site> sitesOf(const std::vector<Site>& sites, std::size_t stage) {
+  const auto first = std::ranges::lower_bound(sites, stage, {}, &Site::stage);
+  const auto last = std::ranges::upper_bound(sites, stage, {}, &Site::stage);
+  return {first, last};
+}
+
 }  // namespace
 
 PipelineGraph::PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled)
@@ -53,6 +61,7 @@ PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> 
 
 void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words,
                                std::vector<std::string> errors) {
+  for (std::size_t i = 0; i < stages.size(); ++i) index_.try_emplace(stages[i].file, i);
   defaults_.resize(stages.size());
   parallelFor(stages.size(), [&](std::size_t i) {
     if (!errors[i].empty()) return;
@@ -95,9 +104,13 @@ spirv::ValueContext PipelineGraph::context(const std::string& file, const progra
 }
 
 const PipelineStage* PipelineGraph::stage(const std::string& file) const {
-  const auto found = std::ranges::find(stages, file, &PipelineStage::file);
-  return found == stages.end() || file.empty() ? nullptr : &*found;
+  const auto found = index_.find(file);
+  return found == index_.end() || file.empty() ? nullptr : &stages[found->second];
 }
+
+std::span<const TraceSite> PipelineGraph::tracesOf(std::size_t stage) const { return sitesOf(traces, stage); }
+
+std::span<const CallSite> PipelineGraph::callsOf(std::size_t stage) const { return sitesOf(calls, stage); }
 
 const program::HitShaders& PipelineGraph::shaders(HitGroupRay hit) const {
   static const program::HitShaders kNoShaders;
@@ -281,23 +294,21 @@ std::set<std::size_t> PipelineGraph::reachableStages() const {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].kind == shader::Stage::rayGeneration) open.push_back(i);
-  const auto follow = [&](std::size_t from, const auto& sites) {
+  const auto follow = [&](const auto& sites) {
     for (const auto& site : sites)
-      if (site.stage == from)
-        for (const Edge& edge : site.edges) open.push_back(edge.stage);
+      for (const Edge& edge : site.edges)
+        if (!reached.contains(edge.stage)) open.push_back(edge.stage);
   };
   while (!open.empty()) {
     const std::size_t next = open.back();
     open.pop_back();
     if (!reached.insert(next).second) continue;
-    follow(next, traces);
-    follow(next, calls);
-    for (const TraceSite& site : traces) {
-      if (site.stage != next) continue;
+    follow(tracesOf(next));
+    follow(callsOf(next));
+    for (const TraceSite& site : tracesOf(next))
       for (const HitGroupRay hit : site.hits)
         if (const PipelineStage* anyHit = stage(shaders(hit).anyHit))
           open.push_back(static_cast<std::size_t>(anyHit - stages.data()));
-    }
   }
   return reached;
 }

@@ -11,6 +11,8 @@
 #include <memory>
 #include <set>
 #include <span>
+#include <string>
+#include <unordered_map>
 
 #include "check/pipeline_groups.h"
 #include "check/value_context.h"
@@ -85,12 +87,14 @@ struct PipelineGraph {
   const PipelineGroups groups;
   const bool usesLibrary;  // the stages include <quintet/…>, so structures with its names are those of the library
   std::vector<PipelineStage> stages;
-  std::vector<TraceSite> traces;
-  std::vector<CallSite> calls;
-  std::string error;  // first module that cannot be analyzed completely, and the reason; empty if all can
+  std::vector<TraceSite> traces;  // in the order of their stages
+  std::vector<CallSite> calls;    // in the order of their stages
+  std::string error;              // first module that cannot be analyzed completely, and the reason; empty if all can
 
   std::size_t rayCount() const { return groups.rays.size(); }
   const PipelineStage* stage(const std::string& file) const;  // null if unknown
+  std::span<const TraceSite> tracesOf(std::size_t stage) const;
+  std::span<const CallSite> callsOf(std::size_t stage) const;
   const spirv::StageFacts& facts(const TraceSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const CallSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const Edge& edge) const { return *stages[edge.stage].facts; }
@@ -130,7 +134,8 @@ struct PipelineGraph {
  private:
   using Context = std::function<spirv::ValueContext(const std::string&, const program::SceneFacts*, ParameterUse)>;
 
-  std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
+  std::unordered_map<std::string, std::size_t> index_;  // of the stages, by file
+  std::deque<spirv::TraceFacts> intended_;              // of traces with swapped arguments
   Context context_;
   bool hasParameters_ = false;
   // Without a known table: all traces use the same records, so a single hit group or miss shader is that of each trace.

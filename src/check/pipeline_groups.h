@@ -62,5 +62,9 @@ bool mayBeProcedural(const PipelineGroups& groups, const program::HitGroup& grou
 
 PipelineGroups groupsOf(const program::Program& program);
 
+// Returns the groups without those that have the shaders of an earlier one. For tables in an unknown order, where they add nothing:
+// engines create thousands of hit groups that differ only in the data of their records.
+PipelineGroups withoutRepeatedGroups(PipelineGroups groups);
+
 }  // namespace quintet::check
 #endif

@@ -166,12 +166,16 @@ bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id va
   return false;
 }
 
-PathsAfter::PathsAfter(const Module& module, const ControlFlow& flow, std::size_t instruction)
+PathsAfter::PathsAfter(const Module& module, const ControlFlow& flow, std::size_t instruction,
+                       const std::vector<std::size_t>& ends)
     : module_(&module), flow_(&flow), instruction_(instruction) {
   const auto position = module.position(instruction).value_or(Module::Position{});
   block_ = position.block;
   function_ = position.function;
   blockCount_ = flow.function().blocks.size();
+  ends_.assign(blockCount_ + 1, false);
+  for (const std::size_t end : ends)
+    if (const std::size_t node = nodeOf(end); node != kNone) ends_[node] = true;
   after_ = from(blockCount_, kNone);
 }
 
@@ -183,7 +187,7 @@ std::size_t PathsAfter::nodeOf(std::size_t instruction) const {
 
 const std::vector<std::size_t>& PathsAfter::successors(std::size_t node) const {
   static const std::vector<std::size_t> kNoSuccessors;
-  if (node == block_) return kNoSuccessors;  // the start runs again: end of the path
+  if (node == block_ || ends_[node]) return kNoSuccessors;  // the start runs again: end of the path
   return flow_->function().blocks[blockOf(node)].successors;
 }
 

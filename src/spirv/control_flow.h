@@ -39,10 +39,12 @@ class ControlFlow {
 bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test,
                             bool throughLoops = true);
 
-// The paths that start after an instruction, such as a trace, and end before it runs again.
+// The paths that start after an instruction, such as a trace, and end before it runs again, or in a block with one of the
+// instructions `ends`.
 class PathsAfter {
  public:
-  PathsAfter(const Module& module, const ControlFlow& flow, std::size_t instruction);
+  PathsAfter(const Module& module, const ControlFlow& flow, std::size_t instruction,
+             const std::vector<std::size_t>& ends = {});
 
   // True if instruction `i` can run after the start on a path with none of the instructions `kills` before it.
   bool reaches(std::size_t i, const std::vector<std::size_t>& kills) const;
@@ -68,6 +70,7 @@ class PathsAfter {
   const Module* module_;
   const ControlFlow* flow_;
   std::size_t instruction_, block_ = 0, function_ = 0, blockCount_ = 0;  // of the start
+  std::vector<bool> ends_;                                               // nodes with an end
   std::vector<bool> after_;                                              // nodes that can run after the start
   mutable std::map<std::size_t, std::vector<std::size_t>> guards_;       // cache, by node
   mutable std::map<std::vector<std::size_t>, Unkilled> unkilled_;        // cache, by instructions

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "spirv/raw_instructions.h"
 #include "spirv/source_text.h"
 
 namespace quintet::spirv {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int kMaxChain = 64;      // nested access chains
 constexpr int kMaxCallLines = 16;  // lines of a call that location() searches
-constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kMaxWords = std::size_t{1} << 26;
 constexpr std::string_view kDebugInfo = "NonSemantic.Shader.DebugInfo.100";
 
@@ -463,36 +463,27 @@ namespace {
 
 // Returns a copy without debug information, except the names of ids that `hasName` selects, and of their members.
 template <class Predicate>
-std::vector<std::uint32_t> stripped(std::span<const std::uint32_t> words, const Predicate& hasName) {
+std::vector<std::uint32_t> stripped(Words words, const Predicate& hasName) {
   using spv::Op;
-  std::vector<std::uint32_t> result(words.begin(),
-                                    words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kHeaderWords)));
+  std::vector<std::uint32_t> result = headerOf(words);
   std::vector<Id> nonSemanticSets;
-  const auto isNonSemantic = [&](std::size_t at, std::size_t count) {
-    const std::span<const std::uint32_t> operands = words.subspan(at + 1, count - 1);
-    switch (static_cast<Op>(words[at] & 0xFFFFu)) {
-      case Op::OpExtension: return literalString(operands, 0) == "SPV_KHR_non_semantic_info";
+  const auto isNonSemantic = [&](const RawInstruction& i) {
+    switch (i.op) {
+      case Op::OpExtension: return literalString(i.operands, 0) == "SPV_KHR_non_semantic_info";
       case Op::OpExtInstImport:
-        if (!literalString(operands, 1).starts_with("NonSemantic.")) return false;
-        nonSemanticSets.push_back(operands[0]);
+        if (!literalString(i.operands, 1).starts_with("NonSemantic.")) return false;
+        nonSemanticSets.push_back(i.at(0));
         return true;
-      case Op::OpExtInst: return count > 3 && std::ranges::find(nonSemanticSets, operands[2]) != nonSemanticSets.end();
+      case Op::OpExtInst:
+        return i.operands.size() > 2 && std::ranges::find(nonSemanticSets, i.at(2)) != nonSemanticSets.end();
       default: return false;
     }
   };
-  for (std::size_t at = kHeaderWords; at < words.size();) {
-    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
-    if (isNonSemantic(at, count)) {
-      at += count;
-      continue;
-    }
-    const Op op = static_cast<Op>(words[at] & 0xFFFFu);
-    const bool isName = op == Op::OpName || op == Op::OpMemberName;
-    if (isName && (count < 2 || !hasName(words[at + 1]))) {
-      at += count;
-      continue;
-    }
-    switch (op) {
+  for (const RawInstruction& i : RawInstructions(words)) {
+    if (isNonSemantic(i)) continue;
+    const bool isName = i.op == Op::OpName || i.op == Op::OpMemberName;
+    if (isName && (i.operands.empty() || !hasName(i.at(0)))) continue;
+    switch (i.op) {
       case Op::OpSourceContinued:
       case Op::OpSource:
       case Op::OpSourceExtension:
@@ -500,11 +491,8 @@ std::vector<std::uint32_t> stripped(std::span<const std::uint32_t> words, const 
       case Op::OpLine:
       case Op::OpNoLine:
       case Op::OpModuleProcessed: break;
-      default:
-        result.insert(result.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
-                      words.begin() + static_cast<std::ptrdiff_t>(at + count));
+      default: append(result, i.words);
     }
-    at += count;
   }
   return result;
 }
@@ -517,42 +505,32 @@ std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words
 
 std::vector<std::uint32_t> withInterfaceNames(std::span<const std::uint32_t> words) {
   std::set<Id> named;
-  for (std::size_t at = kHeaderWords; at < words.size();) {
-    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
-    const auto op = static_cast<spv::Op>(words[at] & 0xFFFFu);
-    if (op == spv::Op::OpFunction) break;
-    if (op >= spv::Op::OpTypeVoid && op <= spv::Op::OpTypeForwardPointer && count > 1) named.insert(words[at + 1]);
-    if (op == spv::Op::OpVariable && count > 2) named.insert(words[at + 2]);
-    at += count;
+  for (const RawInstruction& i : RawInstructions(words)) {
+    if (i.op == spv::Op::OpFunction) break;
+    if (i.op >= spv::Op::OpTypeVoid && i.op <= spv::Op::OpTypeForwardPointer) named.insert(i.at(0));
+    if (i.op == spv::Op::OpVariable) named.insert(i.at(1));
   }
   return stripped(words, [&](Id id) { return named.contains(id); });
 }
 
 std::vector<std::uint32_t> withEntryPoint(std::span<const std::uint32_t> words, const EntryPoint& entryPoint) {
   using spv::Op;
-  const std::size_t head = std::min(words.size(), kHeaderWords);
-  std::vector<std::uint32_t> result(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(head));
+  std::vector<std::uint32_t> result = headerOf(words);
   std::vector<Id> removed;  // functions of the other entry points
   std::optional<Id> kept;
-  for (std::size_t at = kHeaderWords; at < words.size();) {
-    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
-    const std::span<const std::uint32_t> operands = words.subspan(at + 1, count - 1);
-    const auto op = static_cast<Op>(words[at] & 0xFFFFu);
+  for (const RawInstruction& i : RawInstructions(words)) {
     bool keep = true;
-    if (op == Op::OpEntryPoint && operands.size() > 2) {
-      keep = !kept && operands[0] == static_cast<std::uint32_t>(entryPoint.stage) &&
-             literalString(operands, 2) == entryPoint.name;
+    if (i.op == Op::OpEntryPoint && i.operands.size() > 2) {
+      keep = !kept && i.at(0) == static_cast<std::uint32_t>(entryPoint.stage) &&
+             literalString(i.operands, 2) == entryPoint.name;
       if (keep)
-        kept = operands[1];
+        kept = i.at(1);
       else
-        removed.push_back(operands[1]);
-    } else if ((op == Op::OpExecutionMode || op == Op::OpExecutionModeId) && !operands.empty()) {
-      keep = kept == operands[0] || std::ranges::find(removed, operands[0]) == removed.end();
+        removed.push_back(i.at(1));
+    } else if ((i.op == Op::OpExecutionMode || i.op == Op::OpExecutionModeId) && !i.operands.empty()) {
+      keep = kept == i.at(0) || std::ranges::find(removed, i.at(0)) == removed.end();
     }
-    if (keep)
-      result.insert(result.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
-                    words.begin() + static_cast<std::ptrdiff_t>(at + count));
-    at += count;
+    if (keep) append(result, i.words);
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "spirv/raw_instructions.h"
 #include "spirv/type.h"
 
 namespace quintet::spirv {
@@ -39,7 +40,6 @@ class ModuleWriter {
   std::vector<std::uint32_t> take() { return std::move(result_); }
 
  private:
-  static constexpr std::size_t kHeaderWords = 5;
   const std::vector<std::uint32_t>& words_;
   std::vector<std::uint32_t> result_;
   std::size_t at_;

@@ -17,8 +17,9 @@
 namespace quintet::spirv {
 
 // Returns a copy with OpTraceRayKHR in place of OpTraceRayMotionNV, without DontInline, which would hide the accesses of a
-// function from the analysis, and with OpSource of an unknown language for languages that are newer than SPIRV-Tools. Words
-// that cannot be read as instructions are copied.
+// function from the analysis, with decorations in place of decoration groups, loads and stores in place of OpCopyMemory, and with
+// OpSource of an unknown language for languages that are newer than SPIRV-Tools. Words that cannot be read as instructions are
+// copied.
 std::vector<std::uint32_t> withPlainCode(std::span<const std::uint32_t> words);
 
 // Returns a copy without instruction `number` (from 1), if the analyses do not need it: a capability, an extension, a

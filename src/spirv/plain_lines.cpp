@@ -12,15 +12,15 @@
 #include <string_view>
 #include <utility>
 
+#include "spirv/raw_instructions.h"
 #include "spirv/type.h"
 
 namespace quintet::spirv {
 namespace {
 
 using spv::Op;
-using Words = std::span<const std::uint32_t>;
 
-constexpr std::size_t kHeaderWords = 5, kMaxInstruction = 65535;
+constexpr std::size_t kMaxInstruction = 65535;
 constexpr auto kForwardReferences = static_cast<Op>(4433);  // OpExtInstWithForwardRefsKHR, of Slang
 constexpr std::string_view kDebugInfoSet = "NonSemantic.Shader.DebugInfo.100";
 
@@ -28,16 +28,6 @@ struct Location {
   Id file = 0;  // OpString
   std::uint32_t line = 0, column = 0;
 };
-
-// Calls use(op, operands, instruction) for each instruction. `operands` are all words after the first one.
-template <class Use>
-void forEach(Words words, const Use& use) {
-  for (std::size_t at = kHeaderWords; at < words.size();) {
-    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
-    use(static_cast<Op>(words[at] & 0xFFFFu), words.subspan(at + 1, count - 1), words.subspan(at, count));
-    at += count;
-  }
-}
 
 bool isText(Words literal, std::string_view text) {
   return literal.size() * sizeof(std::uint32_t) > text.size() &&
@@ -50,13 +40,12 @@ class Converter {
   explicit Converter(Words words) : words_(words) {}
 
   std::vector<std::uint32_t> run() {
-    forEach(words_, [&](Op op, Words operands, Words) { collect(op, operands); });
+    for (const RawInstruction& i : RawInstructions(words_)) collect(i.op, i.operands);
     if (sets_.empty()) return {words_.begin(), words_.end()};
-    forEach(words_, [&](Op op, Words operands, Words) {
-      if (isDebugInfo(op, operands)) collectDebugInfo(operands);
-    });
-    result_.assign(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(std::min(words_.size(), kHeaderWords)));
-    forEach(words_, [&](Op op, Words operands, Words instruction) { convert(op, operands, instruction); });
+    for (const RawInstruction& i : RawInstructions(words_))
+      if (isDebugInfo(i.op, i.operands)) collectDebugInfo(i.operands);
+    result_ = headerOf(words_);
+    for (const RawInstruction& i : RawInstructions(words_)) convert(i.op, i.operands, i.words);
     return std::move(result_);
   }
 
@@ -111,7 +100,7 @@ class Converter {
     if (count > kMaxInstruction) return;
     result_.push_back(static_cast<std::uint32_t>(count << 16) | static_cast<std::uint32_t>(op));
     result_.insert(result_.end(), operands);
-    result_.insert(result_.end(), literal.begin(), literal.end());
+    append(result_, literal);
   }
 
   // The instructions before names: sources must follow the strings.
@@ -158,7 +147,7 @@ class Converter {
     const auto declared = declares ? declarations_.find(at(operands, 1)) : declarations_.end();
     const bool known = declared != declarations_.end() && declared->second.file != 0;
     if (known) add(Op::OpLine, {declared->second.file, declared->second.line, declared->second.column});
-    result_.insert(result_.end(), instruction.begin(), instruction.end());
+    append(result_, instruction);
     if (known && op == Op::OpVariable) add(Op::OpNoLine, {});
   }
 

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "spirv/module_writer.h"
+#include "spirv/raw_instructions.h"
 
 namespace quintet::spirv {
 namespace {
@@ -180,12 +181,10 @@ bool importsDebugPrintf(std::span<const std::uint32_t> words) {
   std::array<std::uint32_t, 6> name{};
   static_assert(sizeof(name) == kPrintSet.size() + 1);
   std::memcpy(name.data(), kPrintSet.data(), kPrintSet.size());
-  for (std::size_t at = 5; at < words.size();) {
-    const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
-    const Op op = static_cast<Op>(words[at] & 0xFFFFu);
-    if (op == Op::OpExtInstImport && std::ranges::equal(words.subspan(at, count).subspan(2), name)) return true;
-    if (op == Op::OpFunction) return false;
-    at += count;
+  for (const RawInstruction& i : RawInstructions(words)) {
+    if (i.op == Op::OpExtInstImport && !i.operands.empty() && std::ranges::equal(i.operands.subspan(1), name))
+      return true;
+    if (i.op == Op::OpFunction) return false;
   }
   return false;
 }

@@ -527,6 +527,10 @@ Indices StageFacts::unguardedReads(std::size_t site, Id variable, std::uint32_t 
   std::erase_if(result, [&](std::size_t i) {
     return guarded(paths, accesses_[i].instruction, variable, test) || !usedUnguarded(paths, accesses_[i], leaf, test);
   });
+  if (result.empty()) return result;
+  // A loop around can reach the read without the condition, but only with a value that it has set.
+  const PathsAfter unset(module_, flows_[module_.position(site)->function], site, writers(variable, leaf));
+  std::erase_if(result, [&](std::size_t i) { return guarded(unset, accesses_[i].instruction, variable, test); });
   return result;
 }
 

@@ -98,7 +98,8 @@ struct TypeComparison {
       case Kind::matrix:
       case Kind::array:
       case Kind::runtimeArray: {
-        if (left.count != right.count) return versus(a, b);
+        // A specialization constant can be the length of an array; it is unknown until it has a value.
+        if (left.count != right.count && left.count != 0 && right.count != 0) return versus(a, b);
         if (auto inner = compare(left.element, right.element, depth + 1))
           return aTypes.get(left.element).kind == Kind::structure ? fmt::format("elements: {}", *inner) : versus(a, b);
         return {};
@@ -157,7 +158,7 @@ std::string Types::nameOf(Id id) const {
     const Type& type = get(id);
     const Type& element = get(type.element);
     switch (type.kind) {
-      case Kind::array: suffix += fmt::format("[{}]", type.count); break;
+      case Kind::array: suffix += type.count == 0 ? "[?]" : fmt::format("[{}]", type.count); break;
       case Kind::runtimeArray: suffix += "[]"; break;
       case Kind::vector: return vectorPrefix(element) + fmt::format("vec{}", type.count) + suffix;
       case Kind::matrix:

@@ -34,7 +34,7 @@ struct Type {
   Kind kind = Kind::none;   // none if the id is not a type
   std::uint32_t width = 0;  // bits of a number
   bool isSigned = false;
-  std::uint32_t count = 0;    // number of components, columns or elements
+  std::uint32_t count = 0;    // number of components, columns or elements; 0 if a specialization constant decides it
   Id element = 0;             // type of a component, column, element, or of what a pointer points to
   std::uint32_t storage = 0;  // of a pointer
   std::string name;           // of a structure

@@ -434,6 +434,14 @@ class Vulkan {
     parts.groups.push_back(group);
   }
 
+  // Adds a stage with the module of an earlier one.
+  static std::uint32_t repeatStage(Parts& parts, std::uint32_t stage) {
+    if (stage == VK_SHADER_UNUSED_KHR) return stage;
+    const VkPipelineShaderStageCreateInfo repeated = parts.stages[stage];
+    parts.stages.push_back(repeated);
+    return static_cast<std::uint32_t>(parts.stages.size() - 1);
+  }
+
   void addHit(Parts& parts, const Application::HitGroup& hit) {
     auto group =
         structure<VkRayTracingShaderGroupCreateInfoKHR>(VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
@@ -444,6 +452,11 @@ class Vulkan {
     group.anyHitShader = addStage(parts, hit.anyHit);
     group.intersectionShader = addStage(parts, hit.intersection);
     parts.groups.push_back(group);
+    for (std::uint32_t i = 1; i < app_.hitCopies; ++i) {
+      for (std::uint32_t* stage : {&group.closestHitShader, &group.anyHitShader, &group.intersectionShader})
+        *stage = repeatStage(parts, *stage);
+      parts.groups.push_back(group);
+    }
   }
 
   VkPipeline create(const Parts& parts, VkPipelineCreateFlags flags, const VkPipelineLibraryCreateInfoKHR* libraries,

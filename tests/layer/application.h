@@ -32,6 +32,7 @@ struct Application {
   };
   std::vector<std::string> misses{"a.rmiss"}, callables;
   std::vector<HitGroup> hitGroups{{"a.rchit", "", ""}};
+  std::uint32_t hitCopies = 1;  // of each hit group, with stages of their own from the same modules
   std::uint32_t depth = 1;
   std::map<std::uint32_t, std::uint32_t> constants;  // of ray generation
   Modules modules = Modules::handles;

@@ -463,6 +463,20 @@ TEST(Layer, AppliesSpecializationConstants) {
   EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q507"));
 }
 
+// Engines create a stage for each hit group, from few modules. What they share is checked, and reported, once.
+TEST(Layer, ChecksRepeatedStagesOnce) {
+  Application app = withLayer();
+  app.hitCopies = 12;
+  app.hitRecords = {2};
+  RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
+  replace(app.shaders.at("a.rchit"), "payload = Payload(vec3(weights, 0.25), gl_HitTEXT);", "payload.t = weights.x;");
+  app.hitRecords = {13};  // the last copy
+  result = runApplication(app);
+  EXPECT_THAT(idsOf(result), ElementsAre("Q104")) << textsOf(result);
+}
+
 // Ray generation in SPIR-V assembly, without names and lines.
 TEST(Layer, NamesTheIdOfHandwrittenSpirv) {
   Application app = withLayer();

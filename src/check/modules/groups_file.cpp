@@ -178,7 +178,8 @@ class GroupsReader {
     for (const auto& [module, constants] : node.json.items()) {
       const Node ofModule{constants, node.pointer + "/" + escaped(module)};
       requireObject(ofModule);
-      const bool used = std::ranges::any_of(pipeline.stages, [&](const auto& s) { return s.second.module == module; });
+      const bool used = std::ranges::any_of(
+          pipeline.stages, [&name = module](const auto& stage) { return stage.second.module == name; });
       if (!used) fail(ofModule, fmt::format("no group uses the module '{}'", printable(module)));
       shader::SpecializationValues& values = pipeline.specialization[module];
       for (const auto& [id, value] : constants.items()) {

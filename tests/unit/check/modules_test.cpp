@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <iostream>
 
 #include "check/modules/stage_groups.h"
 #include "modules_test_support.h"
 #include "spirv/plain_lines.h"
+#include "spirv/raw_instructions.h"
 #include "spirv/shader_record.h"
 
 namespace quintet::check {
@@ -213,6 +215,53 @@ TEST(ModuleCheck, AppliesSpecializationConstants) {
   EXPECT_THAT(p.check(), ElementsAre("Q502 a.rgen:8"));
 }
 
+// The length of an array in a payload: a constant here, a number there.
+TEST(ModuleCheck, AcceptsLengthsThatSpecializationConstantsDecide) {
+  RawPipeline p = cleanPipeline();
+  for (const char* stage : {"a.rmiss", "a.rchit"}) replace(p.text(stage), "vec4 color;", "vec4 color[4];");
+  replace(p.text("a.rmiss"), "color = vec4(0.5)", "color[0] = vec4(0.5)");
+  replace(p.text("a.rchit"), "color = vec4", "color[0] = vec4");
+  p.text("a.rgen") = "layout(constant_id = 0) const int kCount = 4;\n" + p.text("a.rgen");
+  replace(p.text("a.rgen"), "vec4 color;", "vec4 color[kCount];");
+  replace(p.text("a.rgen"), "gl_LaunchIDEXT.xy), color", "gl_LaunchIDEXT.xy), color[0]");
+  EXPECT_THAT(p.check(), IsEmpty());  // unknown
+  p.values.emplace();
+  EXPECT_THAT(p.check(), IsEmpty());  // the default
+  (*p.values)[0] = {5};
+  EXPECT_THAT(p.check(), ElementsAre("Q101 a.rgen:8", "Q101 a.rgen:8"));
+}
+
+// A loop of bounces in a loop of samples: the position is read only after a hit, or after the loop of samples has set it.
+TEST(ModuleCheck, AcceptsMembersThatALoopAroundSets) {
+  RawPipeline p = cleanPipeline();
+  const std::string payload = "struct Payload { vec3 origin; float light; int done; };\n";
+  p.text("a.rgen") = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(set = 0, binding = 1, rgba8) uniform image2D result;
+)" + payload + R"(layout(location = 0) rayPayloadEXT Payload p;
+layout(push_constant) uniform Push { int samples, bounces; } push;
+void main() {
+  float sum = 0.0;
+  for (int i = 0; i < push.samples; ++i) {
+    p.origin = vec3(0);
+    p.done = 1;
+    for (int bounce = 0; bounce < push.bounces; ++bounce) {
+      traceRayEXT(tlas, gl_RayFlagsOpaqueEXT, 0xFF, 0, 0, 0, p.origin, 0.001, vec3(0, 0, 1), 1e4, 0);
+      sum += p.light;
+      if (p.done == 1) break;
+      p.done = 1;
+    }
+  }
+  imageStore(result, ivec2(gl_LaunchIDEXT.xy), vec4(sum));
+}
+)";
+  const std::string received = payload + "layout(location = 0) rayPayloadInEXT Payload p;\nvoid main() { ";
+  p.text("a.rmiss") = received + "p.light = 1.0; }\n";
+  p.text("a.rchit") = received + "p.light = 0.5; p.origin = vec3(0, 0, gl_HitTEXT); p.done = 0; }\n";
+  EXPECT_THAT(p.check(), IsEmpty());
+  replace(p.text("a.rgen"), "if (p.done == 1) break;", "");
+  EXPECT_THAT(p.check(), ElementsAre("Q104 a.rgen:14"));
+}
+
 TEST(ModuleCheck, FindsGroupsOfStagesAlone) {
   RawPipeline p = cleanPipeline();
   replace(p.text("a.rmiss"), "vec4 color;", "vec3 color;");
@@ -224,6 +273,26 @@ TEST(ModuleCheck, FindsGroupsOfStagesAlone) {
   ASSERT_THAT(result.diagnostics, testing::SizeIs(1));
   EXPECT_EQ(result.diagnostics[0].id, "Q101");
   EXPECT_THAT(result.chain, ElementsAre("a.rgen", testing::_));
+}
+
+// Without groups, each of two miss shaders can be the one of each trace. The one that fits to no trace is the mistake.
+TEST(ModuleCheck, NamesTheStageThatFitsToNothing) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rgen") = twoTraces("gl_RayFlagsNoneEXT");
+  p.stages.push_back({"s.rmiss",
+                      "layout(location = 1) rayPayloadInEXT float visible;\nvoid main() { visible = 1.0; }\n",
+                      Stage::miss});
+  const auto found = [&] {
+    const std::vector<ModuleStage> modules = p.modules();
+    std::vector<std::string> texts;
+    for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
+      if (d.id == "Q101") texts.push_back(d.text);
+    return texts;
+  };
+  EXPECT_THAT(found(), IsEmpty());
+  replace(p.text("s.rmiss"), "float visible", "vec2 visible");
+  replace(p.text("s.rmiss"), "= 1.0", "= vec2(1.0)");
+  EXPECT_THAT(found(), ElementsAre(AllOf(HasSubstr("is float"), HasSubstr("s.rmiss"), HasSubstr("vec2"))));
 }
 
 // A member that a miss leaves, in a condition that the miss decides.
@@ -331,6 +400,172 @@ TEST(ModuleCheck, ReportsWhatCannotBeAnalyzedAsAProblem) {
   std::vector<ModuleStage> modules = p.modules();
   modules[1] = stage;
   EXPECT_THAT(checkModules(p.groups, modules, {}).diagnostics, IsEmpty());
+}
+
+// The instructions of a module, without the header.
+std::vector<std::vector<std::uint32_t>> instructionsOf(const std::vector<std::uint32_t>& words) {
+  std::vector<std::vector<std::uint32_t>> result;
+  for (const spirv::RawInstruction& i : spirv::RawInstructions(words))
+    result.emplace_back(i.words.begin(), i.words.end());
+  return result;
+}
+
+std::vector<std::uint32_t> encoded(spv::Op op, std::vector<std::uint32_t> operands) {
+  operands.insert(operands.begin(),
+                  static_cast<std::uint32_t>((operands.size() + 1) << 16) | static_cast<std::uint32_t>(op));
+  return operands;
+}
+
+spv::Op opOf(const std::vector<std::uint32_t>& instruction) { return static_cast<spv::Op>(instruction[0] & 0xFFFFu); }
+
+// OpCopyMemory, which some compilers write for an assignment, is followed as a load and a store.
+TEST(ModuleCheck, FollowsCopiesOfMemory) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rmiss") =
+      "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() {\n  vec4 sky;\n  sky.xyz = vec3(0.5);\n"
+      "  sky.w = 1.0;\n  color = sky;\n}\n";
+  const auto withCopies = [&] {
+    const std::vector<std::uint32_t> words = compileRaw(Stage::miss, p.text("a.rmiss"), "a.rmiss");
+    std::vector<std::uint32_t> result(words.begin(), words.begin() + 5);
+    const auto all = instructionsOf(words);
+    std::size_t copies = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      std::vector<std::uint32_t> next = all[i];
+      if (i + 1 < all.size() && opOf(all[i]) == spv::Op::OpLoad && opOf(all[i + 1]) == spv::Op::OpStore &&
+          all[i + 1][2] == all[i][2]) {
+        next = encoded(spv::Op::OpCopyMemory, {all[i + 1][1], all[i][3]});
+        ++i, ++copies;
+      }
+      result.insert(result.end(), next.begin(), next.end());
+    }
+    EXPECT_EQ(copies, 1u);
+    std::vector<ModuleStage> modules = p.modules();
+    modules[1] = stageModule("a.rmiss", result, {spv::ExecutionModel::MissKHR, "main"}, {});
+    EXPECT_EQ(modules[1].problem, "");
+    std::vector<std::string> ids;
+    for (const Diagnostic& d : checkModules(p.groups, modules, {}).diagnostics) ids.push_back(d.id);
+    return ids;
+  };
+  EXPECT_THAT(withCopies(), IsEmpty());
+  replace(p.text("a.rmiss"), "  sky.w = 1.0;\n", "");
+  EXPECT_THAT(withCopies(), ElementsAre("Q104"));
+}
+
+// Decorations by OpGroupDecorate, which is deprecated: NonUniform of a descriptor index.
+TEST(ModuleCheck, AppliesDecorationGroups) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rchit") = R"(#extension GL_EXT_nonuniform_qualifier : require
+layout(set = 0, binding = 2) uniform sampler2D textures[];
+layout(location = 0) rayPayloadInEXT vec4 color;
+hitAttributeEXT vec2 b;
+void main() { color = textureLod(textures[nonuniformEXT(gl_InstanceCustomIndexEXT)], b, 0.0); }
+)";
+  const auto found = [&](bool grouped) {
+    std::vector<std::uint32_t> words = compileRaw(Stage::closestHit, p.text("a.rchit"), "a.rchit");
+    const std::uint32_t group = words[3]++;
+    std::vector<std::uint32_t> result(words.begin(), words.begin() + 5), targets{group}, kept;
+    bool written = false;
+    for (const auto& i : instructionsOf(words)) {
+      if (opOf(i) == spv::Op::OpDecorate && i[2] == static_cast<std::uint32_t>(spv::Decoration::NonUniform)) {
+        targets.push_back(i[1]);
+        continue;
+      }
+      if (opOf(i) == spv::Op::OpTypeVoid && !written) {
+        written = true;
+        const auto add = [&](const std::vector<std::uint32_t>& words) {
+          result.insert(result.end(), words.begin(), words.end());
+        };
+        add(encoded(spv::Op::OpDecorate, {group, static_cast<std::uint32_t>(spv::Decoration::NonUniform)}));
+        add(encoded(spv::Op::OpDecorationGroup, {group}));
+        if (grouped) add(encoded(spv::Op::OpGroupDecorate, targets));
+      }
+      result.insert(result.end(), i.begin(), i.end());
+    }
+    EXPECT_GT(targets.size(), 1u);
+    std::vector<ModuleStage> modules = p.modules();
+    modules[2] = stageModule("a.rchit", result, {spv::ExecutionModel::ClosestHitKHR, "main"}, {});
+    EXPECT_EQ(modules[2].problem, "");
+    std::vector<std::string> ids;
+    for (const Diagnostic& d : checkModules(p.groups, modules, {}).diagnostics) ids.push_back(d.id);
+    return ids;
+  };
+  EXPECT_THAT(found(true), IsEmpty());
+  EXPECT_THAT(found(false), ElementsAre("Q704"));
+}
+
+// The pipeline with many hit groups, each with a closest-hit shader of its own that traces.
+PipelineGroups withHitGroups(std::size_t count, std::vector<ModuleStage>& modules, PipelineGroups groups) {
+  groups.tablesKnown = false;
+  groups.hitGroups.clear();
+  const ModuleStage hit = modules.back();
+  modules.pop_back();
+  for (std::size_t i = 0; i < count; ++i) {
+    modules.push_back(hit);
+    modules.back().name = "hit " + std::to_string(i);
+    program::HitGroup group;
+    group.name = std::to_string(i);
+    group.shaders[""].closestHit = modules.back().name;
+    groups.hitGroups.push_back(group);
+  }
+  return groups;
+}
+
+RawPipeline shadowPipeline() {
+  RawPipeline p = cleanPipeline();
+  p.groups.declaredRecursion = 2;
+  p.text("a.rchit") = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(location = 0) rayPayloadInEXT vec4 color;
+layout(location = 1) rayPayloadEXT vec4 shadow;
+hitAttributeEXT vec2 b;
+void main() {
+  shadow = vec4(0);
+  vec3 p = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
+  traceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 0, p, 0.01, vec3(0, 1, 0), 100.0, 1);
+  color = vec4(b, 0, 1) * shadow;
+}
+)";
+  return p;
+}
+
+// Each shader of many can be the one that a ray hits, and a mistake of one of them is found.
+TEST(ModuleCheck, FollowsManyHitGroups) {
+  const RawPipeline p = shadowPipeline();
+  std::vector<ModuleStage> modules = p.modules();
+  const PipelineGroups groups = withHitGroups(60, modules, p.groups);
+  EXPECT_THAT(checkModules(groups, modules, {}).diagnostics, IsEmpty());
+  RawPipeline wrong = shadowPipeline();
+  replace(wrong.text("a.rchit"), "rayPayloadInEXT vec4 color", "rayPayloadInEXT vec3 color");
+  replace(wrong.text("a.rchit"), "vec4(b, 0, 1) * shadow", "vec3(b, 0) * shadow.x");
+  modules[40].spirv = wrong.modules().back().spirv;
+  const std::vector<Diagnostic> found = checkModules(groups, modules, {}).diagnostics;
+  EXPECT_THAT(found, IsEmpty());  // the table need not have it
+  PipelineGroups known = groups;
+  known.tablesKnown = true;
+  const std::vector<Diagnostic> certain = checkModules(known, modules, {}).diagnostics;
+  ASSERT_THAT(certain, testing::SizeIs(1));
+  EXPECT_EQ(certain[0].id, "Q101");
+  EXPECT_THAT(certain[0].text, HasSubstr("hit 38"));
+}
+
+TEST(ModuleCheck, LeavesOutRepeatedGroups) {
+  PipelineGroups groups = cleanPipeline().groups;
+  groups.hitGroups.push_back(groups.hitGroups[0]);
+  groups.hitGroups.push_back(groups.hitGroups[0]);
+  groups.hitGroups[2].shaders[""].anyHit = "a.rahit";
+  groups.misses.push_back(groups.misses[0]);
+  const PipelineGroups once = withoutRepeatedGroups(groups);
+  EXPECT_THAT(once.hitGroups, testing::SizeIs(2));
+  EXPECT_THAT(once.misses, testing::SizeIs(1));
+}
+
+TEST(ModuleCheckCost, DISABLED_PrintsTimesOfManyHitGroups) {
+  const RawPipeline p = shadowPipeline();
+  for (const std::size_t count : {1u, 250u, 500u, 1000u, 2000u, 4000u}) {
+    std::vector<ModuleStage> modules = p.modules();
+    const PipelineGroups groups = withHitGroups(count, modules, p.groups);
+    const double seconds = checkModules(groups, modules, {}).seconds;
+    std::cout << count << " hit groups: " << seconds << " s\n";
+  }
 }
 
 // NonSemantic.Shader.DebugInfo.100 in place of OpLine: the instructions that glslang -gVS and DXC write.

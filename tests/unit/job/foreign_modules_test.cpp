@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modules in the form of other compilers than glslang (tests/check/modules): correct ones are not reported, mistakes are, with
-// the lines of their sources, and extensions that the check does not follow switch rules off.
+// Modules in the form of other compilers than glslang (tests/check/modules), and GLSL in the style of engines (tests/check/engines):
+// correct ones are not reported, mistakes are, with the lines of their sources, and extensions that the check does not follow
+// switch rules off.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +20,7 @@
 #include "base/file.h"
 #include "check/diagram/diagram.h"
 #include "check/diagram/svg.h"
+#include "check/modules_test_support.h"
 #include "job/live_module_check.h"
 #include "job/module_checks.h"
 #include "shader/shader_test_support.h"
@@ -30,6 +35,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 const fs::path kModules = fs::path(QUINTET_SOURCE_ROOT) / "tests/check/modules";
+
+const fs::path kEngines = fs::path(QUINTET_SOURCE_ROOT) / "tests/check/engines";
 
 using Edits = std::vector<std::pair<std::string, std::string>>;
 
@@ -209,6 +216,91 @@ TEST(ForeignModules, HitObjectsAreANote) {
   wrong.push_back({"%float_far %shadow", "%float_0 %shadow"});
   EXPECT_THAT(ForeignModule("hlsl_library", wrong).found(), ElementsAre("Q509 lib.hlsl:44", note));
 }
+
+// A folder of tests/check/engines: a pipeline of GLSL files, its groups, and mistakes that are edits of a file.
+class EnginePipeline {
+ public:
+  explicit EnginePipeline(const fs::path& folder) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+      files_[entry.path().filename().string()] = readTextFile(entry.path());
+  }
+
+  struct Mistake {
+    std::string found, file, from, to;
+  };
+  std::vector<Mistake> mistakes() const {
+    std::vector<Mistake> result;
+    std::istringstream lines(files_.at("mistakes.txt"));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with('#')) continue;
+      for (std::size_t at = line.find("\\n"); at != line.npos; at = line.find("\\n", at)) line.replace(at, 2, "\n");
+      std::istringstream fields(line);
+      Mistake& mistake = result.emplace_back();
+      for (std::string* field : {&mistake.found, &mistake.file, &mistake.from, &mistake.to})
+        std::getline(fields, *field, '\t');
+    }
+    return result;
+  }
+
+  void make(const Mistake& mistake) {
+    std::string& text = files_.at(mistake.file);
+    const std::size_t at = text.find(mistake.from);
+    ASSERT_NE(at, text.npos) << mistake.from;
+    text.replace(at, mistake.from.size(), mistake.to);
+  }
+
+  // "Q104 a.rgen", with its groups or without.
+  std::vector<std::string> found(bool described) const {
+    const TemporaryFolder folder;
+    const fs::path groups = fs::path(folder.path()) / "pipeline.json";
+    for (const auto& [name, text] : files_) {
+      const fs::path file = fs::path(folder.path()) / name;
+      if (name == "pipeline.json")
+        writeFile(file, std::as_bytes(std::span(text)));
+      else if (const auto stage = shader::stageOfFile(file))
+        writeFile(file.string() + ".spv", std::as_bytes(std::span(check::compileRaw(*stage, text, name))));
+    }
+    CheckObserver observer;
+    const ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
+    std::vector<std::string> result;
+    for (const Diagnostic& d : checkModuleFiles(request, observer).diagnostics())
+      result.push_back(d.id + " " + fs::path(d.file).filename().string());
+    return result;
+  }
+
+ private:
+  std::map<std::string, std::string> files_;
+};
+
+class EngineShaders : public testing::TestWithParam<std::string> {
+ protected:
+  const fs::path folder_ = kEngines / GetParam();
+};
+
+TEST_P(EngineShaders, AreNotReported) {
+  for (const bool described : {true, false}) EXPECT_THAT(EnginePipeline(folder_).found(described), IsEmpty());
+}
+
+TEST_P(EngineShaders, MistakesAreReportedOnce) {
+  const std::vector<EnginePipeline::Mistake> mistakes = EnginePipeline(folder_).mistakes();
+  EXPECT_THAT(mistakes, testing::Not(IsEmpty()));
+  for (const EnginePipeline::Mistake& mistake : mistakes) {
+    EnginePipeline pipeline(folder_);
+    pipeline.make(mistake);
+    EXPECT_THAT(pipeline.found(true), ElementsAre(mistake.found)) << mistake.file << ": " << mistake.to;
+  }
+}
+
+std::vector<std::string> engineFolders() {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kEngines))
+    names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Folders, EngineShaders, testing::ValuesIn(engineFolders()),
+                         [](const auto& name) { return name.param; });
 
 // --graph: the stages, and what each trace can reach.
 TEST(ForeignModules, AreDescribedOnRequest) {

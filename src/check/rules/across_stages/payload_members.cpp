@@ -361,6 +361,7 @@ class MemberRule {
   // Nullopt if the leaf can have different values; else whether a shader that the trace can run writes it.
   std::optional<bool> isConstant(std::uint32_t leaf) const {
     if (payload_->storage != StorageClass::RayPayloadKHR || canHaveResultOfOther(leaf)) return {};
+    if (canRunMore(leaf)) return {};
     std::set<std::string> constants;
     bool known = addConstants(*tracer_, payload_->id, leaf, constants);
     std::size_t callees = 0, writers = 0;
@@ -374,6 +375,27 @@ class MemberRule {
     }
     if (!known || callees == 0 || constants.size() != 1) return {};
     return writers > 0;
+  }
+
+  // True if a different mistake keeps a writer of the leaf from running: a record beyond the table (Q515), or flags that exclude
+  // the any-hit shader in all traces (Q610).
+  bool canRunMore(std::uint32_t leaf) const {
+    if (graph_.groups.hitRecords != HitRecords::byRecord) return false;
+    const std::set<std::size_t> records = graph_.recordsOf(*site_->trace);
+    if (graph_.groups.tablesKnown && !records.empty() && *records.rbegin() >= graph_.groups.hitGroups.size())
+      return true;
+    const auto excludes = [](const TraceSite& site) {
+      return site.trace->flags.mustHave(kFlagOpaque) || site.trace->flags.mustHave(kFlagCullNoOpaque);
+    };
+    return std::ranges::all_of(graph_.traces, excludes) && std::ranges::any_of(site_->hits, [&](HitGroupRay hit) {
+             const PipelineStage* anyHit = graph_.stage(graph_.shaders(hit).anyHit);
+             const spirv::SharedVariable* payload =
+                 anyHit && anyHit->facts ? anyHit->facts->incoming(StorageClass::IncomingRayPayloadKHR) : nullptr;
+             if (!payload) return false;
+             const bool sameLeaves =
+                 anyHit->facts->leaves(payload->id).count() == tracer_->leaves(payload_->id).count();
+             return !sameLeaves || anyHit->facts->writes(payload->id, leaf);
+           });
   }
 
   // True if the leaf can have a value from a different trace with the payload when the trace starts.

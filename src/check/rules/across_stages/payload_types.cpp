@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "check/rules/rules.h"
 #include "spirv/source_text.h"
@@ -62,26 +65,56 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
 
 // With dynamic arguments, a trace or call is assumed to reach more shaders than it does. A difference is then an error
 // only if one side differs in all of its pairs.
-bool isTypeError(const PipelineGraph& graph, const std::vector<Pair>& pairs, const Pair& pair) {
-  if (!pair.difference) return false;
-  if (pair.edge->exact) return true;
-  if (!graph.error.empty()) return false;  // the other side can be a stage that cannot be analyzed
-  const auto agrees = [&](auto related) {
-    return std::ranges::any_of(pairs, [&](const Pair& p) { return !p.difference && related(p); });
-  };
-  const bool receiverAgrees = agrees([&](const Pair& p) { return p.edge->stage == pair.edge->stage; });
-  const bool senderAgrees =
-      pair.alternative || agrees([&](const Pair& p) {
-        return p.site == pair.site && (p.edge->role == Role::miss) == (pair.edge->role == Role::miss);
-      });
-  // A pipeline can have groups that its table does not have, and a table can have records without a shader.
-  const PipelineGroups& groups = graph.groups;
-  if (groups.groupsKnown && !groups.tablesKnown) return !receiverAgrees && !senderAgrees;
-  // A hit can end without a closest-hit shader.
-  const bool isHit = pair.edge->role != Role::miss && pair.edge->role != Role::callable;
-  if (isHit && groups.hitRecords == HitRecords::byRecord) return !receiverAgrees;
-  return !receiverAgrees || !senderAgrees;
-}
+class TypeErrors {
+ public:
+  TypeErrors(const PipelineGraph& graph, const std::vector<Pair>& pairs) : graph_(graph) {
+    for (const Pair& pair : pairs) {
+      if (pair.difference && pair.edge->exact) receiversOfExact_.insert(pair.edge->stage);
+      if (pair.difference) continue;
+      receivers_.insert(pair.edge->stage);
+      senders_.insert({pair.site, pair.edge->role == Role::miss});
+    }
+    for (const Pair& pair : pairs) {
+      if (!pair.difference || receiverAgrees(pair) || senderAgrees(pair)) continue;
+      receiversOfBoth_.insert(pair.edge->stage);
+      sendersOfBoth_.insert({pair.site, pair.edge->role == Role::miss});
+    }
+  }
+
+  // Call it once for each pair, in their order.
+  bool isError(const Pair& pair) {
+    if (!pair.difference) return false;
+    if (pair.edge->exact) return true;
+    if (receiversOfExact_.contains(pair.edge->stage)) return false;  // that error is certain
+    if (!graph_.error.empty()) return false;  // the other side can be a stage that cannot be analyzed
+    const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
+    // A pipeline can have groups that its table does not have, and a table can have records without a shader.
+    const PipelineGroups& groups = graph_.groups;
+    if (groups.groupsKnown && !groups.tablesKnown) return !receiver && !sender;
+    // A hit can end without a closest-hit shader.
+    const bool isHit = pair.edge->role != Role::miss && pair.edge->role != Role::callable;
+    const bool hitMayEnd = isHit && groups.hitRecords == HitRecords::byRecord;
+    if (groups.tablesKnown) return !receiver || (!hitMayEnd && !sender);
+    // Any shader can be the one that is meant. It is the one that also fits to nothing, if there is one.
+    if (!receiver && !sender) return true;
+    if (!receiver) return !receiversOfBoth_.contains(pair.edge->stage) && reported_.insert(pair.edge->stage).second;
+    if (sender || hitMayEnd) return false;
+    const Sender key{pair.site, pair.edge->role == Role::miss};
+    return !sendersOfBoth_.contains(key) && reportedSenders_.insert(key).second;
+  }
+
+ private:
+  using Sender = std::pair<std::size_t, bool>;  // the site, and whether its misses are meant
+
+  bool receiverAgrees(const Pair& pair) const { return receivers_.contains(pair.edge->stage); }
+  bool senderAgrees(const Pair& pair) const {
+    return pair.alternative || senders_.contains({pair.site, pair.edge->role == Role::miss});
+  }
+
+  const PipelineGraph& graph_;
+  std::set<std::size_t> receivers_, receiversOfExact_, receiversOfBoth_, reported_;  // stages
+  std::set<Sender> senders_, sendersOfBoth_, reportedSenders_;
+};
 
 // A stage that receives at a location cannot send at the same location: a different location is then intended.
 bool locationsDiffer(const spirv::StageFacts& sender, const Pair& pair) {
@@ -116,12 +149,13 @@ template <class Site>
 void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
                 const Wording& wording, Report& report) {
   const std::vector<Pair> pairs = pairsOf(graph, sites, incoming);
+  TypeErrors errors(graph, pairs);
   for (const Pair& pair : pairs) {
     const Site& site = sites[pair.site];
     const spirv::StageFacts& sender = graph.facts(site);
     const spirv::StageFacts& receiver = graph.facts(*pair.edge);
     const SourceLocation location = graph.location(site);
-    if (isTypeError(graph, pairs, pair)) {
+    if (errors.isError(pair)) {
       report.add(wording.typeId, location,
                  fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
                              sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),

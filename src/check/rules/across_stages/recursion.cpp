@@ -91,8 +91,7 @@ class TraceChains {
     state_[stage] = 1;
     path_.push_back(stage);
     std::uint64_t below = 0;
-    for (const TraceSite& site : graph_.traces) {
-      if (site.stage != stage) continue;
+    for (const TraceSite& site : graph_.tracesOf(stage)) {
       std::uint32_t depth = 1;
       Step step{site.edges.empty() ? nullptr : &site, stage};
       for (const Edge& edge : site.edges) {
@@ -117,9 +116,8 @@ class TraceChains {
       addAssumed(site, Role::miss, depth, step);
       if (depth > depth_[stage]) depth_[stage] = depth, steps_[stage] = step;
     }
-    for (const CallSite& site : graph_.calls)
-      for (const Edge& edge : site.edges)
-        if (site.stage == stage) below = std::max(below, bytesOf(edge));
+    for (const CallSite& site : graph_.callsOf(stage))
+      for (const Edge& edge : site.edges) below = std::max(below, bytesOf(edge));
     bytes_[stage] = graph_.stages[stage].facts->frameBytes() + below;
     path_.pop_back();
     state_[stage] = 2;
