@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness.h"
+#include "lights/light_scene.h"
 #include "program/load.h"
 #include "rendered_image.h"
 
@@ -143,6 +144,61 @@ TEST(NestedMedia, ClearSolidsAreInvisibleInAFurnace) {
       options.set = {"bounces=200"};
       expectUniform(renderImage(scene, options), vec4(1.0f), {.error = 0.02, .rounding = 2e-3});
     }
+  }
+}
+
+// The set of solids, and the index of a material relative to the solid outside, which can have dispersion.
+TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
+  SceneBuilder builder;
+  scene::Material dispersive = clearGlass(1.5f, 1.0f);
+  dispersive.dispersion = 1.0f;
+  builder.add(box(vec3(-1.0f), vec3(1.0f)), dispersive).add(box(vec3(-2.0f), vec3(2.0f)), clearGlass(1.25f, 1.0f));
+  const LightScene device(builder.scene, {});
+  const std::string prelude = "#include <quintet/media.glsl>\n";
+  const std::vector<std::uint32_t> media{1, 2, 3, 4, 5};
+  const auto left = runCompute<uvec4>(prelude + R"(
+    #define In uint
+    #define Out uvec4
+    Out run(uint index, In medium) { return medium == 5u ? mediaEntered(uvec4(1u, 2u, 3u, 4u), 5u) : mediaLeft(uvec4(1u, 2u, 3u, 4u), medium); }
+  )",
+                                      media, media.size(), device.options());
+  EXPECT_EQ(left[0], uvec4(2, 3, 4, 0));
+  EXPECT_EQ(left[1], uvec4(1, 3, 4, 0));
+  EXPECT_EQ(left[2], uvec4(1, 2, 4, 0));
+  EXPECT_EQ(left[3], uvec4(1, 2, 3, 0));
+  EXPECT_EQ(left[4], uvec4(5, 1, 2, 3));
+
+  struct Query {
+    std::uint32_t outside;  // 1: with dispersion, 2: without
+    float transmission, dispersion;
+  };
+  struct Answer {
+    float ior, dispersion;
+    vec3 transmitted;
+  };
+  const std::vector<Query> queries{{1, 1, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0.5f}, {0, 1, 0}};
+  const auto answers = runCompute<Answer>(prelude + R"(
+    struct Query { uint outside; float transmission; float dispersion; };
+    struct Answer { float ior; float dispersion; vec3 transmitted; };
+    #define In Query
+    #define Out Answer
+    Out run(uint index, In q) {
+      BsdfParameters p = BsdfParameters(vec3(0.8), 0.0, 0.1, q.transmission, 1.8, true, false, 1.0, vec3(1.0), 0.0, 0.01,
+                                        vec3(0.0, 0.0, 1.0), vec3(0.0), 0.25, 0.0, vec3(0.5), 0.0, 0.0, 1.3, 400.0,
+                                        q.dispersion, vec3(1.0));
+      setOutside(p, q.outside, 2u);
+      return Answer(p.ior, p.dispersion, p.transmitted);
+    }
+  )",
+                                          queries, queries.size(), device.options());
+  const float ofDispersive = 1.5f + 0.025f * 0.5f;  // of channel 2
+  const float iors[] = {1.8f / ofDispersive, 1.8f / ofDispersive, 1.8f / 1.25f, 1.8f / ofDispersive, 1.8f};
+  const float dispersions[] = {1, 0, 0, 0.5f, 0};
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    EXPECT_NEAR(answers[i].ior, iors[i], 1e-6f) << i;
+    EXPECT_EQ(answers[i].dispersion, dispersions[i]) << i;
+    EXPECT_EQ(answers[i].transmitted, i == 0 ? vec3(0, 0, 3) : vec3(1.0f))
+        << i << ": disperse() chooses the channel of others";
   }
 }
 
