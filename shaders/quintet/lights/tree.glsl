@@ -82,16 +82,18 @@ float lightImportance(LightNode node, LightSampleContext context) {
 const uint kLightCertain = 0x80000000u;         // a probability of 1
 const uint kLightNoContribution = 0xFFFFFFFFu;  // neither child can contribute
 
-// Returns the probability of the first of two children, in units of 2^-31. Each child that can contribute gets at least
-// one unit.
-uint lightFirstProbability(uint pair, LightSampleContext context) {
+// Returns the probability of the first of two children, in units of 2^-31, and the links of both. Each child that can
+// contribute gets at least one unit.
+uint lightFirstProbability(uint pair, LightSampleContext context, out uvec2 links) {
   float first = 0.0;
   float second = 0.0;
   bool share = false;
+  links = uvec2(0u);
   for (uint i = 0u; i < 2u; ++i) {  // a loop, so that compilers that inline the body compile it once
     const LightNode node = LightNodeArray(frame.lightNodes).at[pair + i];
     first = second;
     second = lightImportance(node, context);
+    links = uvec2(links.y, node.link);
     share = share || (node.link & kLightNodeShare) != 0u;
   }
   if (second == 0.0) return first == 0.0 ? kLightNoContribution : kLightCertain;
@@ -121,8 +123,8 @@ uint drawLight(LightSampleContext context, float u, uint bits, out float probabi
   uint digits = uint(u * 16777216.0) << 7 | bits & 127u;  // 31 binary digits
   probability = LightNodeArray(frame.lightNodes).at[0].intensity > 0.0 ? 1.0 : 0.0;
   while ((link & kLightNodeLeaf) == 0u && probability > 0.0) {
-    const uint pair = link & kLightNodeIndex;
-    const uint firstProbability = lightFirstProbability(pair, context);
+    uvec2 links;
+    const uint firstProbability = lightFirstProbability(link & kLightNodeIndex, context, links);
     if (firstProbability == kLightNoContribution) {
       probability = 0.0;
       break;
@@ -130,10 +132,11 @@ uint drawLight(LightSampleContext context, float u, uint bits, out float probabi
     const bool first = digits < firstProbability;
     const uint part = first ? firstProbability : kLightCertain - firstProbability;
     probability *= float(part) * (1.0 / 2147483648.0);
+    link = first ? links.x : links.y;
+    if ((link & kLightNodeLeaf) != 0u) break;
     // Rescale u within its part for the next decision. Bits that u does not have are random.
     bits = hash(bits + 0x9E3779B9u);
     digits = lightDigits(first ? digits : digits - firstProbability, bits >> 1, part);
-    link = LightNodeArray(frame.lightNodes).at[first ? pair : pair + 1u].link;
   }
   return probability > 0.0 ? link & kLightNodeIndex : kNoLight;
 }
@@ -142,14 +145,16 @@ uint drawLight(LightSampleContext context, float u, uint bits, out float probabi
 float lightLeafProbability(LightSampleContext context, uint leaf) {
   if (leaf == kNoLight) return 0.0;
   float probability = 1.0;
+  uint link = LightNodeArray(frame.lightNodes).at[0].link;
   for (uint at = 0u; at != leaf && probability > 0.0;) {
-    const uint pair = LightNodeArray(frame.lightNodes).at[at].link & kLightNodeIndex;
-    const uint second = LightNodeArray(frame.lightNodes).at[pair + 1u].link;
-    const bool first = leaf != pair + 1u && (leaf == pair || (second & kLightNodeLeaf) != 0u || leaf < (second & kLightNodeIndex));
-    const uint firstProbability = lightFirstProbability(pair, context);
+    const uint pair = link & kLightNodeIndex;
+    uvec2 links;
+    const uint firstProbability = lightFirstProbability(pair, context, links);
+    const bool first = leaf != pair + 1u && (leaf == pair || (links.y & kLightNodeLeaf) != 0u || leaf < (links.y & kLightNodeIndex));
     const uint part = firstProbability == kLightNoContribution ? 0u : first ? firstProbability : kLightCertain - firstProbability;
     probability *= float(part) * (1.0 / 2147483648.0);
     at = first ? pair : pair + 1u;
+    link = first ? links.x : links.y;
   }
   return probability;
 }

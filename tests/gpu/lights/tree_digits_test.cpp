@@ -82,7 +82,8 @@ TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
     #define Out uint
     uint run(uint i, uint node) {
       const uint link = LightNodeArray(frame.lightNodes).at[node].link;
-      return (link & kLightNodeLeaf) != 0u ? 0u : lightFirstProbability(link & kLightNodeIndex, here());
+      uvec2 links;
+      return (link & kLightNodeLeaf) != 0u ? 0u : lightFirstProbability(link & kLightNodeIndex, here(), links);
     }
   )",
                                                  nodes, nodes.size(), scene.options());
