@@ -472,8 +472,8 @@ void main() { color = textureLod(textures[nonuniformEXT(gl_InstanceCustomIndexEX
       }
       if (opOf(i) == spv::Op::OpTypeVoid && !written) {
         written = true;
-        const auto add = [&](const std::vector<std::uint32_t>& words) {
-          result.insert(result.end(), words.begin(), words.end());
+        const auto add = [&](const std::vector<std::uint32_t>& instruction) {
+          result.insert(result.end(), instruction.begin(), instruction.end());
         };
         add(encoded(spv::Op::OpDecorate, {group, static_cast<std::uint32_t>(spv::Decoration::NonUniform)}));
         add(encoded(spv::Op::OpDecorationGroup, {group}));
