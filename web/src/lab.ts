@@ -337,7 +337,7 @@ export class Lab {
     const name = address.get("lesson");
     const lesson = name ? this.lesson.find(name) : undefined;
     if (lesson) {
-      if (this.lesson.lesson !== lesson) await this.openLesson(lesson);
+      if (this.lesson.lesson?.name !== lesson.name) await this.openLesson(lesson);
       else this.stay();
       return;
     }
