@@ -29,7 +29,8 @@ set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevi
 # that explains samples of all programs, the coverage of error estimates, and the one that inserts a bug of each kind into
 # programs. Together they take a fifth of the time of all suites. 'make test' leaves them to CI and `ctest --preset release -L
 # long`.
-set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights gpu.ErrorEstimate gpu.ExplainedPrograms unit.Mutation)
+set(QUINTET_LONG_SUITES gpu.BsdfFurnace gpu.BsdfSampling gpu.PaneWeights gpu.ErrorEstimate gpu.ExplainedPrograms unit.Mutation
+    unit.EngineShaders)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
