@@ -31,7 +31,7 @@ set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevi
 # leaves them to CI and `ctest --preset release -L long`.
 set(QUINTET_LONG_SUITES gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate gpu.ExplainedPrograms
   gpu.LampBehindPanes gpu.PaneWeights gpu.SessionEdits gpu.SolidAlpha gpu.SolidFarSide gpu.SolidLight unit.CheckBuiltIn
-  unit.LibraryMutation unit.Mistakes unit.Mutation)
+  unit.EngineShaders unit.LibraryMutation unit.Mistakes unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)

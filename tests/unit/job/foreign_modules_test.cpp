@@ -255,10 +255,11 @@ class EnginePipeline {
     const fs::path groups = fs::path(folder.path()) / "pipeline.json";
     for (const auto& [name, text] : files_) {
       const fs::path file = fs::path(folder.path()) / name;
-      if (name == "pipeline.json")
-        writeFile(file, std::as_bytes(std::span(text)));
-      else if (const auto stage = shader::stageOfFile(file))
-        writeFile(file.string() + ".spv", std::as_bytes(std::span(check::compileRaw(*stage, text, name))));
+      if (name == "pipeline.json") writeFile(file, text);
+      const auto stage = shader::stageOfFile(file);
+      if (!stage) continue;
+      const std::vector<std::uint32_t> words = check::compileRaw(*stage, text, name);
+      writeFile(file.string() + ".spv", std::as_bytes(std::span(words)));
     }
     CheckObserver observer;
     const ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
