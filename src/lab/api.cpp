@@ -36,14 +36,14 @@ std::span<const EmbeddedFile> embeddedDocumentation();
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr std::string_view kFiles = "/api/files/", kDocs = "/api/docs/";
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 
-HttpResponse jsonResponse(const Json& json, unsigned status = 200) {
-  return {.status = status, .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+HttpResponse jsonResponse(const OrderedJson& json, unsigned status = 200) {
+  return {.status = status, .body = json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace)};
 }
 
 // A method that the route does not have.
@@ -81,7 +81,7 @@ HttpResponse conditionMissing() {
   return errorResponse(428, "the request must state which version it replaces: If-Match or If-None-Match");
 }
 
-Json summaryJson(const ProgramSummary& summary) {
+OrderedJson summaryJson(const ProgramSummary& summary) {
   return {{"name", summary.name}, {"title", summary.title}, {"description", summary.description}};
 }
 
@@ -152,9 +152,9 @@ Api::Answer Api::handle(const HttpRequest& request) const {
     response.headers.emplace_back("Allow", error.allowed);
     return response;
   } catch (const ConflictError& error) {
-    return errorResponse(412, error.what(), {{"hash", Json(error.hash()).dump()}});
+    return errorResponse(412, error.what(), {{"hash", OrderedJson(error.hash()).dump()}});
   } catch (const OverwriteError& error) {
-    return errorResponse(409, error.what(), {{"files", Json(error.files()).dump()}});
+    return errorResponse(409, error.what(), {{"files", OrderedJson(error.files()).dump()}});
   } catch (const UsageError& error) {
     return errorResponse(400, error.what());
   } catch (const FileError& error) {
@@ -187,7 +187,7 @@ Api::Answer Api::route(const HttpRequest& request, const RequestTarget& target) 
   if (path == "/api/lessons") return lessons();
   if (path == "/api/export") return exportProgram(target);
   if (path == "/api/diagnostics") {
-    Json list = Json::array();
+    OrderedJson list = OrderedJson::array();
     for (const check::DiagnosticInfo& info : check::allDiagnostics())
       list.push_back({{"id", info.id},
                       {"severity", severityName(info.severity)},
@@ -197,7 +197,7 @@ Api::Answer Api::route(const HttpRequest& request, const RequestTarget& target) 
     return jsonResponse(list);
   }
   if (path == "/api/library") {
-    Json list = Json::array();
+    OrderedJson list = OrderedJson::array();
     for (const EmbeddedFile& library : embeddedShaderLibrary())
       list.push_back({{"path", library.path}, {"text", library.data}});
     return jsonResponse(list);
@@ -218,7 +218,7 @@ HttpResponse Api::describeProject() const {
 
 HttpResponse Api::files() const {
   const ProjectFolder::Listing listing = project_.list();
-  Json entries = Json::array();
+  OrderedJson entries = OrderedJson::array();
   for (const ProjectFolder::Entry& entry : listing.files)
     entries.push_back({{"path", entry.name}, {"size", entry.size}, {"modified", entry.modified}});
   return jsonResponse({{"files", std::move(entries)}, {"truncated", listing.truncated}});
@@ -255,7 +255,7 @@ HttpResponse Api::putFile(const HttpRequest& request, const std::string& name) c
 }
 
 HttpResponse Api::programs() const {
-  Json builtIn = Json::array(), own = Json::array();
+  OrderedJson builtIn = OrderedJson::array(), own = OrderedJson::array();
   static const std::vector<ProgramSummary> kBuiltIn = builtInSummaries();
   for (const ProgramSummary& summary : kBuiltIn) builtIn.push_back(summaryJson(summary));
   for (const ProgramSummary& summary : projectSummaries(project_)) own.push_back(summaryJson(summary));
@@ -272,7 +272,7 @@ HttpResponse Api::program(const std::string& name) const {
   } catch (const UsageError& error) {  // no program has this name
     return errorResponse(404, error.what());
   }
-  Json entries = Json::array();
+  OrderedJson entries = OrderedJson::array();
   for (const ProgramFile& entry : found.files)
     entries.push_back({{"path", entry.name}, {"role", entry.role}, {"hash", entry.hash}, {"text", entry.text}});
   return jsonResponse({{"name", found.name},
@@ -282,11 +282,11 @@ HttpResponse Api::program(const std::string& name) const {
                        {"main", found.main},
                        {"scene", found.scene},
                        {"files", std::move(entries)},
-                       {"diagnostics", Json::parse(check::diagnosticsJson(found.diagnostics))}});
+                       {"diagnostics", OrderedJson::parse(check::diagnosticsJson(found.diagnostics))}});
 }
 
 HttpResponse Api::copyProgram(const std::string& body) const {
-  const Json request = Json::parse(body);
+  const OrderedJson request = OrderedJson::parse(body);
   const std::string from = request.at("from"), to = request.at("to");
   const bool replace = request.value("replace", false);
   const std::vector<std::string> written = writeFiles(project_, to, copiedFiles(project_, from), replace);
@@ -296,7 +296,7 @@ HttpResponse Api::copyProgram(const std::string& body) const {
 HttpResponse Api::lessons() const {
   static const std::vector<Lesson> kCourse =
       courseLessons(documentText("lessons/README.md"), documentText, program::builtInPrograms());
-  Json list = Json::array();
+  OrderedJson list = OrderedJson::array();
   for (const Lesson& lesson : kCourse) {
     const std::string copy = "lessons/" + lesson.name;
     std::error_code ignored;

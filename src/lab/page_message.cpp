@@ -15,7 +15,7 @@ namespace quintet::lab {
 namespace {
 
 using job::interactive::JsonFields;
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 const std::vector<std::string> kLabCommands{"open",    "received", "pause", "advance", "pick", "value",
                                             "explain", "graph",    "exr",   "video",   "read", "restart"};

@@ -15,41 +15,43 @@
 namespace quintet::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using job::interactive::Session;
 
-std::string lineOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string lineOf(const OrderedJson& json) { return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
 
 // JSON has no such numbers.
-Json numberJson(double value) {
+OrderedJson numberJson(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   return value;
 }
 
 // The double with the fewest digits that rounds to this float.
-Json shortest(float value) {
+OrderedJson shortest(float value) {
   if (!std::isfinite(value)) return numberJson(value);
   return std::stod(fmt::format("{}", value));
 }
 
-Json pointJson(const vec3& point) { return Json::array({shortest(point.x), shortest(point.y), shortest(point.z)}); }
+OrderedJson pointJson(const vec3& point) {
+  return OrderedJson::array({shortest(point.x), shortest(point.y), shortest(point.z)});
+}
 
-Json listJson(const std::vector<std::string>& names) {
-  Json list = Json::array();
+OrderedJson listJson(const std::vector<std::string>& names) {
+  OrderedJson list = OrderedJson::array();
   for (const std::string& name : names)
     if (list.size() < kMaxListedNames) list.push_back(name);
   return list;
 }
 
-Json cameraJson(const Session& session) {
+OrderedJson cameraJson(const Session& session) {
   if (session.camera().orthographic) return nullptr;
   const job::interactive::OrbitCamera camera = session.navigation();
   const vec3 up = camera.worldFromCamera * vec3(0, 1, 0);
-  Json json{{"from", pointJson(camera.eye())},
-            {"at", pointJson(camera.center)},
-            {"up", pointJson(up)},
-            {"fov", shortest(glm::degrees(camera.verticalFov))}};
+  OrderedJson json{{"from", pointJson(camera.eye())},
+                   {"at", pointJson(camera.center)},
+                   {"up", pointJson(up)},
+                   {"fov", shortest(glm::degrees(camera.verticalFov))}};
   if (camera.apertureRadius > 0) {
     json["aperture"] = shortest(camera.apertureRadius);
     json["focus"] = shortest(camera.focusDistance);
@@ -69,14 +71,14 @@ bool usesCamera(const program::Program& program) {
 
 std::string openedJson(const Session& session, const std::string& program, const std::string& scene,
                        const std::string& device) {
-  Json cameras = Json::array();
+  OrderedJson cameras = OrderedJson::array();
   for (const scene::Camera& camera : session.scene().cameras)
     if (cameras.size() < kMaxListedNames) cameras.push_back(camera.name);
   return lineOf({{"event", "opened"},
                  {"program", program},
                  {"scene", scene},
                  {"device", device},
-                 {"description", Json::parse(program::describeAsJson(session.program()))},
+                 {"description", OrderedJson::parse(program::describeAsJson(session.program()))},
                  {"materials", listJson(session.materialNames())},
                  {"lights", listJson(session.lightNames())},
                  {"instances", listJson(session.instanceNames())},
@@ -91,7 +93,7 @@ std::string stateJson(const Session& session, const std::string& program, bool p
   return lineOf(
       {{"event", "state"},
        {"program", program},
-       {"parameters", Json::parse(session.parameters().toJson())},
+       {"parameters", OrderedJson::parse(session.parameters().toJson())},
        {"output", state.output},
        {"exposure", state.exposure},
        {"tonemap", state.toneMap ? render::toneMapNames().at(static_cast<std::size_t>(*state.toneMap)) : "default"},
@@ -114,7 +116,7 @@ std::string stateJson(const Session& session, const std::string& program, bool p
 
 std::string diagnosticsJson(const std::vector<Diagnostic>& diagnostics, bool outdated) {
   return lineOf({{"event", "diagnostics"},
-                 {"diagnostics", Json::parse(check::diagnosticsJson(diagnostics))},
+                 {"diagnostics", OrderedJson::parse(check::diagnosticsJson(diagnostics))},
                  {"outdated", outdated}});
 }
 
@@ -124,7 +126,7 @@ std::string statisticsJson(const Statistics& statistics) {
                  {"frames", statistics.frames},
                  {"seconds", statistics.seconds},
                  {"raysPerSecond", statistics.raysPerSecond},
-                 {"error", statistics.error ? numberJson(*statistics.error) : Json(nullptr)}});
+                 {"error", statistics.error ? numberJson(*statistics.error) : OrderedJson(nullptr)}});
 }
 
 std::string imageJson(const job::interactive::ImageUpdated& image, std::uint32_t number) {
@@ -138,7 +140,7 @@ std::string imageJson(const job::interactive::ImageUpdated& image, std::uint32_t
 }
 
 std::string valueJson(uvec2 pixel, const std::vector<float>& value) {
-  Json numbers = Json::array();
+  OrderedJson numbers = OrderedJson::array();
   for (const float number : value) numbers.push_back(shortest(number));
   return lineOf({{"event", "value"}, {"x", pixel.x}, {"y", pixel.y}, {"value", std::move(numbers)}});
 }
@@ -151,7 +153,9 @@ std::string progressJson(std::uint64_t done, std::uint64_t total) {
   return lineOf({{"event", "progress"}, {"done", done}, {"total", total}});
 }
 
-std::string graphJson(const std::string& graph) { return lineOf({{"event", "graph"}, {"graph", Json::parse(graph)}}); }
+std::string graphJson(const std::string& graph) {
+  return lineOf({{"event", "graph"}, {"graph", OrderedJson::parse(graph)}});
+}
 
 std::string workerJson(const std::string& state, const std::string& message, unsigned restarts) {
   return lineOf({{"event", "worker"}, {"state", state}, {"message", message}, {"restarts", restarts}});

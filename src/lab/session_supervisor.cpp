@@ -13,7 +13,7 @@
 namespace quintet::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 std::string endText(const WorkerEnd& end) {
   if (end.signal != 0) {

@@ -6,7 +6,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -398,26 +401,29 @@ TEST_F(LabSession, ReachesNoFileOutsideOfTheProject) {
   EXPECT_THAT(page.waitFor("error").at("message").get<std::string>(), HasSubstr("is not a name"));
 }
 
-// The commands arrive before the worker has opened its device.
+// The worker can be opening the first program before the others arrive, which takes it longer than sending them.
 TEST_F(LabSession, OpensOnlyTheLastOfSeveralPrograms) {
   const LabProcess server = start();
   PageClient page(server);
   for (int number = 1; number <= 3; ++number) {
-    Json command = open(number == 3 ? "mine" : "<programs/normals>");
+    Json command = open(number == 3 ? "mine" : "<programs/pathtracer>");
     command["number"] = number;
     command["id"] = number;
     page.send(command);
   }
   done(page, 3);
-  std::vector<Json> openings, skipped, opened;
+  std::vector<int> openings, skipped, all;
+  std::vector<std::string> opened;
   for (const Json& event : page.events()) {
     if (event.at("event") == "opening") openings.push_back(event.at("number"));
     if (event.at("event") == "opened") opened.push_back(event.at("program"));
     if (event.at("event") == "error") skipped.push_back(event.at("id"));
   }
-  EXPECT_EQ(openings, (std::vector<Json>{3}));
-  EXPECT_EQ(opened, (std::vector<Json>{"mine"}));
-  EXPECT_EQ(skipped, (std::vector<Json>{1, 2}));
+  EXPECT_THAT(openings, ::testing::AnyOf(::testing::ElementsAre(3), ::testing::ElementsAre(1, 3)));
+  EXPECT_EQ(opened.size(), openings.size());
+  EXPECT_EQ(opened.back(), "mine");
+  std::ranges::merge(openings, skipped, std::back_inserter(all));
+  EXPECT_THAT(all, ::testing::ElementsAre(1, 2, 3));
 }
 
 TEST_F(LabSession, RendersAProgramThatIsNotSavedAndLeavesNoFiles) {
