@@ -2,10 +2,9 @@
 // Appends records to the shader log (shared/log.h), in every ray tracing stage. Instrumented variants of a program
 // include this file; other programs have no log. While there is one, each launch takes one sample.
 //
-//   uint at = logBegin_(kLogRay, 7u);   // kind, number of words
-//   logVec3_(at, origin);
-//   logFloat_(at, t);
-//   ...
+//   uint at = logBegin_(kLogRay, 2u);   // kind, number of words
+//   logWord_(at, first);
+//   logWord_(at, second);
 #ifndef QUINTET_LOG_GLSL
 #define QUINTET_LOG_GLSL
 
@@ -49,18 +48,9 @@ uint logBegin_(uint kind, uint wordCount) {
   return at;
 }
 
-// Store a value at the position `at` and advance it.
+// Stores a word at the position `at` and advances it.
 void logWord_(inout uint at, uint word) {
   if (at != kLogNone_) log_.words[at++] = word;
-}
-void logFloat_(inout uint at, float value) { logWord_(at, floatBitsToUint(value)); }
-void logVec2_(inout uint at, vec2 value) {
-  logFloat_(at, value.x);
-  logFloat_(at, value.y);
-}
-void logVec3_(inout uint at, vec3 value) {
-  logVec2_(at, value.xy);
-  logFloat_(at, value.z);
 }
 
 #undef log_

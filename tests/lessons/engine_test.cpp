@@ -2,8 +2,11 @@
 // Lessons 17 and 20: the folder programs, compared with the host.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lesson.h"
 #include "scene/defaults/auto_camera.h"
+#include "scene_builder.h"
 
 namespace quintet::test {
 namespace {
@@ -145,6 +148,31 @@ TEST(LessonLambert, MirrorsAreBelowTheLimitOfTheRoughness) {
   expectLambert(light, 24);
   light.mirrorRoughness = 0;
   expectLambert(light, 24);
+}
+
+// Between two walls of mirrors, 2 m apart, a ray that moves 0.5 m along the walls for each meter across. They end behind its last
+// reflection, and it reaches the sky in the middle of the gradient. The ninth mirror is black.
+TEST(LessonLambert, ReflectsEightTimes) {
+  for (const int reflections : {1, 8, 9}) {
+    SceneBuilder builder;
+    scene::Material mirror;
+    mirror.baseColor = {0.9f, 0.8f, 0.7f, 1.0f};
+    mirror.metallic = 1.0f;
+    mirror.roughness = 0.0f;
+    const auto end = static_cast<float>(reflections);  // reflection k is at z = 0.5 - k
+    for (const float x : {-1.0f, 1.0f}) builder.add(quad({x, -1, 2}, {0, 2, 0}, {0, 0, -end - 2}), mirror);
+    LessonOptions options;
+    options.width = options.height = 2;
+    options.scene = builder.scene;
+    options.camera = perspective({0, 0, 0}, {1, 0, -0.5f}, 0.1f);
+    const LessonImage image = renderLesson("20_lambert", options);
+    const dvec3 sky(0.55, 0.625, 0.775);
+    for (std::uint32_t i = 0; i < 4; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double weight = std::pow(double{mirror.baseColor[c]}, reflections);
+        EXPECT_NEAR(image.fromTop(i % 2, i / 2)[c], reflections > 8 ? 0.0 : weight * sky[c], 1e-3) << reflections;
+      }
+  }
 }
 
 TEST(LessonRecords, UsesTheCenterOfTheLens) {

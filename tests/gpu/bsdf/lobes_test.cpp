@@ -183,6 +183,26 @@ TEST_F(BsdfLobes, MirrorReflectsByFresnel) {
   }
 }
 
+// Rough surfaces between nearly equal indices are deltas (NearlyEqualIndicesAreADelta), which need no compensation for multiple
+// scattering; for an anisotropic one, the smaller width decides.
+TEST_F(BsdfLobes, DeltasOfRoughGlassLoseNoLight) {
+  struct Interface {
+    float ior, alpha, anisotropy;
+  };
+  for (const bool entering : {true, false})
+    for (const auto& [ior, alpha, anisotropy] : {Interface{1.005f, 1.0f, 0.0f}, Interface{1.011f, 6e-4f, 0.5f}}) {
+      BsdfCase c;
+      c.transmission = 1.0f;
+      c.ior = ior, c.alpha = alpha, c.anisotropy = anisotropy, c.entering = entering;
+      c.wo = directionAt(0.3f);
+      const float eta = entering ? ior : 1.0f / ior;
+      for (const BsdfSampleOut& s : sample(c, 1000)) {
+        ASSERT_TRUE(s.valid && s.delta) << ior << " " << alpha;
+        EXPECT_LT(relativeDifference(s.weight, vec3(s.transmitted ? 1.0f / (eta * eta) : 1.0f)), 2e-3) << ior;
+      }
+    }
+}
+
 // Reflected and refracted fractions, Snell's direction and the scaling of radiance, from both sides.
 TEST_F(BsdfLobes, SmoothGlassFollowsSnellAndFresnel) {
   for (const bool entering : {true, false}) {

@@ -187,12 +187,12 @@ void main() { /**** CLOSEST-HIT SHADER ****/
     traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0, 9.0, 0.0), 0.001, vec3(0.0, -1.0, 0.0), 1000.0, 0);
 }
 )";
-  RenderRequest request = makeRequest({4, 4}, 1, {"heat_depth", "heat_rays"});
+  RenderRequest request = makeRequest({4, 6}, 1, {"heat_depth", "heat_rays"});  // higher than wide
   request.frames.count = 3;
   const RenderResult result = render(request, program::parseLecture(kLecture, "nested.rt.glsl", "here"));
   // In frame 2, the hits of two traces trace again.
-  EXPECT_EQ(valuesOf(result, "heat_depth"), std::vector<float>(16, 3.0f));
-  EXPECT_EQ(valuesOf(result, "heat_rays"), std::vector<float>(16, 3.0f));
+  EXPECT_EQ(valuesOf(result, "heat_depth"), std::vector<float>(24, 3.0f));
+  EXPECT_EQ(valuesOf(result, "heat_rays"), std::vector<float>(24, 3.0f));
 }
 
 }  // namespace

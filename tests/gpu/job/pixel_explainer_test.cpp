@@ -250,13 +250,33 @@ TEST(PixelExplainer, StatesSidesAndUnlitSurfaces) {
   }
 }
 
+// A lamp that reflects nothing.
+TEST(PixelExplainer, StatesThatADirectionIsOfNoUse) {
+  quintet::test::SceneBuilder builder;
+  builder.add(quintet::test::quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}), quintet::test::emitter(vec3(2.0f)));
+  builder.camera(quintet::test::perspective({0, 0, 4}, {0, 0, 0}, 40.0f));
+  RenderRequest request = smallRequest();
+  request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
+  request.environment.source = "none";
+  const PixelExplanation e = explain(program::loadProgram("pathtracer"), {32, 24}, 0, request);
+  const auto samples = eventsOf(e, "bsdf");
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_FALSE(samples[0]->flag("useful"));
+  EXPECT_EQ(samples[0]->find("direction"), nullptr);
+  EXPECT_EQ(vec3(e.outputs[0].value), vec3(2.0f));
+}
+
 // Without MIS and clamping, the numbers of a contribution are those of the path alone.
 TEST(PixelExplainer, StatesTheNumbersOfNaive) {
   std::size_t contributions = 0;
   for (std::uint32_t sample = 0; sample < 4; ++sample) {
     const PixelExplanation e = explain(program::loadProgram("naive"), {32, 30}, sample);
-    for (const ExplainedEvent* event : eventsOf(e, "contribution")) {
-      EXPECT_EQ(event->find("unclamped"), nullptr);
+    std::int64_t scatterings = 0;
+    for (const ExplainedEvent& event : e.events) {
+      if (event.type == "bsdf" && event.find("straight")) scatterings += event.flag("straight") ? 0 : 1;
+      if (event.type != "contribution") continue;
+      EXPECT_EQ(event.find("unclamped"), nullptr);
+      EXPECT_EQ(event.integer("scatterings"), scatterings);
       ++contributions;
     }
     for (const ExplainedEvent* event : eventsOf(e, "emission")) {

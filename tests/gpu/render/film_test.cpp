@@ -13,6 +13,8 @@
 #include "../program/run_program.h"
 #include "harness.h"
 #include "program/description/parser.h"
+#include "quintet/shared/pass.h"
+#include "render/compute_pass.h"
 #include "render/film/adaptive_plan.h"
 #include "render/film/film_error.h"
 #include "render/film/film_file.h"
@@ -83,6 +85,43 @@ TEST(FilmPasses, ConvertsFixedPointSumsToFloats) {
     ASSERT_LE(std::abs(seen[i] - expected), 5e-7 * std::abs(expected)) << i;
   }
   EXPECT_TRUE(std::isnan(seen.back()));
+}
+
+// More elements than a row of workgroups has: the rows of the dispatch and the index in the shader agree.
+TEST(FilmPasses, IndexEachElementOfLargeArrays) {
+  const std::string glsl = R"(#version 460
+    #extension GL_EXT_scalar_block_layout : require
+    #extension GL_EXT_buffer_reference : require
+    #extension GL_EXT_buffer_reference2 : require
+    #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+    #extension GL_GOOGLE_include_directive : require
+    #include <quintet/passes/pass_index.glsl>
+    layout(local_size_x = kPassGroupSize) in;
+    layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Marks { uint at[]; };
+    layout(push_constant, scalar) uniform Block { uint64_t marks; uint count; };
+    void main() {
+      const uint i = passIndex();
+      if (i < count) Marks(marks).at[i] = i + 1u;
+    }
+  )";
+  struct Constants {
+    VkDeviceAddress marks;
+    std::uint32_t count;
+    std::uint32_t unused = 0;
+  };
+  const std::uint32_t count = shared::kPassColumns * shared::kPassGroupSize + 70;
+  gpu::Context& context = testContext();
+  const gpu::Buffer marks(context, {.size = std::uint64_t{count} * 4, .name = "marks"});
+  const gpu::ComputePipeline pass(context, testSet(), compileCompute(glsl), VK_NULL_HANDLE, "index");
+  const Constants constants{marks.address(), count};
+  context.submitAndWait([&](gpu::Commands& commands) {
+    commands.fill(marks, 0);
+    commands.barrier(gpu::Stage::transfer, gpu::Stage::compute);
+    render::dispatchPass(pass, commands, std::as_bytes(std::span(&constants, 1)), count);
+    commands.toHost(gpu::Stage::compute);
+  });
+  const std::vector<std::uint32_t> seen = marks.downloadAs<std::uint32_t>(count);
+  for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(seen[i], i + 1);
 }
 
 // A program whose samples store known values: a term of the mean, the center value, and an id.
@@ -252,14 +291,16 @@ TEST_F(FilmTest, ComputesVarianceFromBatches) {
 
 // If the squares of batches exceed the film's range, the variance is unknown, not 0. The mean is unaffected.
 TEST_F(FilmTest, ReportsUnknownVarianceBeyondItsRange) {
-  for (const bool beyond : {false, true}) {
-    render::Renderer r = renderer({}, beyond ? "1e9" : "1e7");
+  // The largest square is 33,489 scale²: just below 2^62, just above it, and far above it.
+  for (const char* scale : {"1e7", "1.2e7", "1e9"}) {
+    const double value = std::stod(scale);
+    const bool beyond = value > 1e7;
+    render::Renderer r = renderer({}, scale);
     for (int b = 0; b < 3; ++b) r.renderBatch();
     const render::FilmState film = r.saveFilm();
     EXPECT_EQ(render::estimateError(film).known(), !beyond);
     EXPECT_EQ(std::isnan(render::varianceImage(film).pixel<float>(5, 1)[1]), beyond);
-    EXPECT_NEAR(r.image().pixel<float>(5, 1)[1] / ((beyond ? 1e9 : 1e7) * meanOf(12, [](double s) { return s * s; })),
-                1.0, 1e-6);
+    EXPECT_NEAR(r.image().pixel<float>(5, 1)[1] / (value * meanOf(12, [](double s) { return s * s; })), 1.0, 1e-6);
   }
 }
 

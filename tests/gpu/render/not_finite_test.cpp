@@ -161,6 +161,26 @@ void main() {
               ElementsAre(NotFinitePixels{"color", 1, {4, 2}}, NotFinitePixels{"third", 10, {4, 0}}));
 }
 
+// What programs call to decide which samples they discard.
+TEST(NotFinite, IsFiniteTestsEachComponentForBoth) {
+  const std::string toml =
+      "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"r\"\nmiss = \"m.rmiss\"\n[[output]]\nname = "
+      "\"color\"\n";
+  const Outputs outputs = runProgram(toml, {{"m.rmiss", "void main() {}\n"}, {"main.rgen", R"(
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  const float infinity = uintBitsToFloat(0x7F800000u), nan = sqrt(-1.0 - float(pixel.x));
+  vec4 value = vec4(3e38, -3e38, 0.0, 1.0);
+  if (pixel.x > 0u) value[pixel.x % 4u] = pixel.x > 8u ? nan : pixel.x > 4u ? -infinity : infinity;
+  storeOutput(kOutput_color, pixel, vec4(vec3(isFinite(value) ? 1.0 : 0.5), 1.0));
+}
+)"}},
+                                     namedSquares({"a"}), 13);
+  for (std::size_t i = 0; i < 13; ++i) EXPECT_EQ(outputs[0][i].x, i == 0 ? 1.0f : 0.5f) << i;
+}
+
 // Samples that a program discards are counted by the program; the first pixel is the first one row by row.
 TEST(NotFinite, DroppedSamplesHaveAFirstPixel) {
   const std::vector<uvec2> statistics{{5, 0}, {5, 0}, {5, 0}, {5, 2}, {5, 0}, {5, 1}};

@@ -120,6 +120,7 @@ std::vector<LampCase> lampCases() {
   return {{"Clear", {sheetOf(clearGlass(1.5f, 0.0f))}},
           {"Tilted", {sheetOf(green, kTilted)}},
           {"FromBelow", {fromBelow}},
+          {"Dark", {sheetOf(pane({0.2f, 0.25f, 0.1f}), kTilted)}},
           {"Two", {sheetOf(green, kTilted), sheetOf(red, kUp, 0.7f)}},
           {"TwoInFrontOfTheSun", {sheetOf(green, kTilted), sheetOf(red, kUp, 0.7f)}, scene::LightType::directional},
           {"DenseAndDim", {sheetOf(dense, kTilted)}},

@@ -253,6 +253,46 @@ TEST(Sampler, DrawsUseSuccessiveDimensions) {
   }
 }
 
+// "pcg4d" of Jarzynski and Olano (2020).
+uvec4 mixedWords(uvec4 v) {
+  v = v * 1664525u + 1013904223u;
+  for (int round = 0; round < 2; ++round) {
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    if (round == 0) v ^= v >> 16u;
+  }
+  return v;
+}
+
+// Word by word, because a wrong mixer can still give numbers that look independent.
+TEST(Pcg, MixesAsPublished) {
+  const std::vector<uvec4> inputs{{0, 0, 0, 0},
+                                  {1, 0, 0, 0},
+                                  {0, 1, 0, 0},
+                                  {0, 0, 1, 0},
+                                  {0, 0, 0, 1},
+                                  {7, 65536, 3, 9},
+                                  {0xFFFFFFFFu, 0x12345678u, 0x9ABCDEF0u, 0x80000000u}};
+  const auto seen = runCompute<uvec4>(R"(
+    #include <quintet/frame.glsl>
+    #include <quintet/sampling/pcg.glsl>
+    struct In { uvec4 words; };
+    #define Out uvec4
+    uvec4 run(uint index, In value) { return pcg4d(value.words); }
+  )",
+                                      inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) EXPECT_EQ(seen[i], mixedWords(inputs[i])) << i;
+  const Defines pcg{{"PCG", "1"}};
+  for (const Draw& draw : {Draw{{5, 9}, 3, 2, 1}, Draw{{640, 359}, 70000, 31, 0xABCDEF01u}}) {
+    const uvec4 words = mixedWords({draw.pixel.x | draw.pixel.y << 16, draw.index, draw.dimension, draw.seed});
+    const vec2 point = evaluate({draw}, pcg).at(0);
+    EXPECT_EQ(point.x, std::ldexp(static_cast<float>(words.x >> 8), -24));
+    EXPECT_EQ(point.y, std::ldexp(static_cast<float>(words.y >> 8), -24));
+  }
+}
+
 // PCG numbers are also independent between the samples of one pixel. Sobol points are not, by design.
 TEST(Pcg, SuccessiveSamplesAreIndependent) {
   constexpr std::uint32_t kCount = 1 << 17;
