@@ -109,7 +109,7 @@ TEST(FilmPasses, IndexEachElementOfLargeArrays) {
     std::uint32_t count;
     std::uint32_t unused = 0;
   };
-  const std::uint32_t count = shared::kPassColumns * shared::kPassGroupSize + 70;
+  const std::uint32_t count = shared::kPassColumns * shared::kPassGroupSize + 5000;
   gpu::Context& context = testContext();
   const gpu::Buffer marks(context, {.size = std::uint64_t{count} * 4, .name = "marks"});
   const gpu::ComputePipeline pass(context, testSet(), compileCompute(glsl), VK_NULL_HANDLE, "index");
