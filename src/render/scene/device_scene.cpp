@@ -158,9 +158,11 @@ void DeviceScene::showEnvironment(const scene::Environment& environment, const E
   data.texture = environment.image.empty() ? shared::kNoTexture : environmentImage_.texture;
   const vec3 unscaled = environment.image.empty() ? environment.constant : vec3(1.0f);
   setScaleAndRotation(data, environment, unscaled);
-  animatedEnvironment_.reset();
-  if (environment.values.empty()) return;
-  AnimatedEnvironment& animated = animatedEnvironment_.emplace();
+  if (environment.values.empty()) {
+    animatedEnvironment_.reset();
+    return;
+  }
+  AnimatedEnvironment animated;
   animated.environment.constant = unscaled;
   animated.environment.values = environment.values;
   animated.environment.animatedIntensityFactor = environment.animatedIntensityFactor;
@@ -168,6 +170,7 @@ void DeviceScene::showEnvironment(const scene::Environment& environment, const E
   animated.environment.intensity = environment.intensity;
   animated.environment.rotation = environment.rotation;
   animated.unscaledIntegral = table.width > 0 ? table.unscaledIntegral : 0.0;
+  animatedEnvironment_ = std::move(animated);
 }
 
 void DeviceScene::moveEnvironment(const scene::Pose& pose) {
