@@ -13,6 +13,7 @@
 
 #include "device.h"
 #include "instance.h"
+#include "loader_interface.h"
 #include "table_capture.h"
 
 namespace quintet::layer {
@@ -373,16 +374,6 @@ VKAPI_ATTR void VKAPI_CALL destroyAccelerationStructure(VkDevice handle, VkAccel
 
 // ---- Instances and devices
 
-// The entry of the loader's chain that names the next layer.
-template <class Info>
-Info* chainEntry(const void* chain, VkStructureType type) {
-  for (auto* entry = static_cast<const VkBaseInStructure*>(chain); entry; entry = entry->pNext) {
-    auto* info = reinterpret_cast<Info*>(const_cast<VkBaseInStructure*>(entry));
-    if (entry->sType == type && info->function == VK_LAYER_LINK_INFO) return info;
-  }
-  return nullptr;
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
                                               VkInstance* instance) {
   auto* entry = chainEntry<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
@@ -466,11 +457,6 @@ struct Entry {
   std::string_view name;
   PFN_vkVoidFunction function;
 };
-
-template <class Function>
-PFN_vkVoidFunction asVoid(Function* function) {
-  return reinterpret_cast<PFN_vkVoidFunction>(function);
-}
 
 PFN_vkVoidFunction find(const auto& entries, std::string_view name) {
   for (const Entry& entry : entries)
@@ -567,10 +553,6 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance handle, 
 
 extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* negotiation) {
-  if (negotiation->loaderLayerInterfaceVersion < 2) return VK_ERROR_INITIALIZATION_FAILED;
-  negotiation->loaderLayerInterfaceVersion = 2;
-  negotiation->pfnGetInstanceProcAddr = quintet::layer::getInstanceProcAddr;
-  negotiation->pfnGetDeviceProcAddr = quintet::layer::getDeviceProcAddr;
-  negotiation->pfnGetPhysicalDeviceProcAddr = nullptr;
-  return VK_SUCCESS;
+  using namespace quintet::layer;
+  return negotiate(*negotiation, getInstanceProcAddr, getDeviceProcAddr);
 }

@@ -21,9 +21,9 @@
 
 namespace {
 
-using quintet::test::asVoid;
-using quintet::test::chainEntry;
-using quintet::test::negotiate;
+using quintet::layer::asVoid;
+using quintet::layer::chainEntry;
+using quintet::layer::negotiate;
 
 // Dispatchable handles of one instance or device point to the same table of the loader.
 using Key = const void*;

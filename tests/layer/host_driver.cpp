@@ -12,13 +12,13 @@
 
 #include <vulkan/vulkan.h>
 
-#include "../device_loss/loader_interface.h"
+#include "loader_interface.h"
 
 namespace {
 
-using quintet::test::asVoid;
-using quintet::test::chainEntry;
-using quintet::test::negotiate;
+using quintet::layer::asVoid;
+using quintet::layer::chainEntry;
+using quintet::layer::negotiate;
 
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;

@@ -67,6 +67,18 @@ LessonImage renderLesson(const std::string& name, const LessonOptions& options) 
   return result;
 }
 
+int pixelsChangedByLens(const std::string& name) {
+  LessonOptions options;
+  options.camera = lessonScene(name).cameras.front();
+  const LessonImage pinhole = renderLesson(name, options);
+  options.camera->apertureRadius = 0.5f;
+  const LessonImage lens = renderLesson(name, options);
+  int different = 0;
+  for (std::uint32_t y = 0; y < lens.height; ++y)
+    for (std::uint32_t x = 0; x < lens.width; ++x) different += glm::length(lens.at(x, y) - pinhole.at(x, y)) > 1e-3f;
+  return different;
+}
+
 HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect,
                   const dvec2& point) {
   const dvec3 forward = glm::normalize(lookAt - eye);

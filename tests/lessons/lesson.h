@@ -47,6 +47,8 @@ struct LessonImage {
 program::Program lesson(const std::string& name);  // "01_first_ray"
 scene::Scene lessonScene(const std::string& name);
 LessonImage renderLesson(const std::string& name, const LessonOptions& options = {});
+// Renders the first camera of a lesson's scene as a pinhole and with a lens. Returns how many pixels differ.
+int pixelsChangedByLens(const std::string& name);
 
 struct HostRay {
   dvec3 origin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of a command as data. One table serves the parser, --help, the man page and the completions of shells
-// (cli/parser.h, cli/help_text.h, cli/manual.h, cli/completion.h).
+// (cli/parser.h, cli/help_text.h, commands/manual.h, commands/completion.h).
 #ifndef QUINTET_CLI_OPTION_TABLE_H
 #define QUINTET_CLI_OPTION_TABLE_H
 

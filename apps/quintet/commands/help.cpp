@@ -12,11 +12,11 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/wrap.h"
-#include "cli/completion.h"
 #include "cli/help_text.h"
-#include "cli/manual.h"
 #include "cli/parser.h"
 #include "cli/values.h"
+#include "commands/completion.h"
+#include "commands/manual.h"
 
 namespace quintet::cli {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/completion.h"
+#include "commands/completion.h"
 
 #include <algorithm>
 #include <iterator>

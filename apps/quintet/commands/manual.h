@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Man pages from the tables of options: quintet(1), and one page for each command.
-#ifndef QUINTET_CLI_MANUAL_H
-#define QUINTET_CLI_MANUAL_H
+#ifndef QUINTET_COMMANDS_MANUAL_H
+#define QUINTET_COMMANDS_MANUAL_H
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/manual.h"
+#include "commands/manual.h"
 
 #include <algorithm>
 #include <cctype>

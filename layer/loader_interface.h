@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the Vulkan layers of tests need of the interface of the loader. Its specification is in the documentation of the Vulkan
-// loader, LoaderLayerInterface.md.
-#ifndef QUINTET_TESTS_DEVICE_LOSS_LOADER_INTERFACE_H
-#define QUINTET_TESTS_DEVICE_LOSS_LOADER_INTERFACE_H
+// The interface between the Vulkan loader and a layer, also for the layers of tests. Its specification is in the documentation
+// of the loader, LoaderLayerInterface.md.
+#ifndef QUINTET_LAYER_LOADER_INTERFACE_H
+#define QUINTET_LAYER_LOADER_INTERFACE_H
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
-namespace quintet::test {
+namespace quintet::layer {
 
 // The entry of the loader's chain that names the next layer; null if there is none.
 template <class Info>
@@ -35,5 +35,5 @@ inline VkResult negotiate(VkNegotiateLayerInterface& negotiation, PFN_vkGetInsta
   return VK_SUCCESS;
 }
 
-}  // namespace quintet::test
+}  // namespace quintet::layer
 #endif
