@@ -286,7 +286,7 @@ HttpResponse Api::program(const std::string& name) const {
 }
 
 HttpResponse Api::copyProgram(const std::string& body) const {
-  const OrderedJson request = OrderedJson::parse(body);
+  const nlohmann::json request = nlohmann::json::parse(body);
   const std::string from = request.at("from"), to = request.at("to");
   const bool replace = request.value("replace", false);
   const std::vector<std::string> written = writeFiles(project_, to, copiedFiles(project_, from), replace);
