@@ -164,6 +164,9 @@ export async function openPage(context, url, prepare) {
     for (const [name, type] of [["lab.js", "text/javascript"], ["lab.css", "text/css"]])
       await page.route(`**/${name}`, (route) => route.fulfill({ path: path.join(process.env.PAGE, name), contentType: type }));
   page.setDefaultTimeout(kPatience);
+  // The browser can tell a page that is already open about interception later than about the next key, so holdRequests() would
+  // miss a request. A route that matches nothing turns interception on before the page loads.
+  await page.route(() => false, (route) => route.fallback());
   await prepare?.(page);
   await page.goto(url);
   return page;
