@@ -4,11 +4,13 @@
 # Variables: PRESET       release, debug or asan (CMakePresets.json)
 #            CMAKE_FLAGS  additional options of the CMake configuration, such as -DQUINTET_WERROR=ON
 #            CTEST_FLAGS  additional options of CTest, such as '-R scene'
+#            SUITES       tests that `make test` runs: short (default), long or all
 #            JOBS         number of parallel compilers and tests
 
 PRESET      ?= release
 CMAKE_FLAGS ?=
 CTEST_FLAGS ?=
+SUITES      ?= short
 JOBS        ?= $(shell nproc 2>/dev/null || echo 2)
 
 BUILD := build/$(PRESET)
@@ -40,10 +42,15 @@ demo: ## Install packages, build, create the demo scene and render it
 	@echo "Image: $(DEMO)/demo.png"
 
 # Compiling each header alone, inserting bugs, building the examples against the installed package, and the longest suites
-# take half of the time. They are left to CI and `ctest --preset release -L '^(headers|mutation|long)$$'`. The checks of all
-# tasks in the browser take longer than a quarter of an hour: `ctest --preset release -L nightly`.
-test: build ## Install packages, build and run all tests
-	@ctest --preset $(PRESET) --output-on-failure --no-tests=error -j $(JOBS) -LE '^($(if $(filter true,$(CI)),,headers|mutation|long|)nightly)$$' $(CTEST_FLAGS)
+# take half of the time: `make test SUITES=long`, which CI runs, too. The checks of all tasks in the browser take longer than a
+# quarter of an hour: `ctest --preset release -L nightly`.
+SUITE_FLAGS_short := -LE '^(headers|mutation|long|nightly)$$'
+SUITE_FLAGS_long  := -L '^(headers|mutation|long)$$'
+SUITE_FLAGS_all   := -LE '^nightly$$'
+$(if $(SUITE_FLAGS_$(SUITES)),,$(error SUITES is '$(SUITES)' instead of short, long or all))
+
+test: build ## Install packages, build and run the tests (SUITES)
+	@ctest --preset $(PRESET) --output-on-failure --no-tests=error -j $(JOBS) $(SUITE_FLAGS_$(SUITES)) $(CTEST_FLAGS)
 
 build: configure ## Install packages and build
 	@cmake --build --preset $(PRESET) -j $(JOBS)
