@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program `pick` in scenes with several kinds of geometry. Sessions compare its other values (session_test.cpp).
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -29,6 +30,7 @@ TEST(PickProgram, ReadsTheGeometryOfTheHit) {
   render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
   renderer.renderBatch(1);
   // The outputs: color, hit, position, normal and material.
+  const io::Image colors = renderer.film().download(0);
   const std::vector<vec4> hits = renderer.film().plane(1).values, positions = renderer.film().plane(2).values,
                           normals = renderer.film().plane(3).values;
   ASSERT_EQ(hits.size(), 4u);
@@ -39,6 +41,25 @@ TEST(PickProgram, ReadsTheGeometryOfTheHit) {
     const vec3 normal = i == 0 ? vec3(0, 0, 1) : glm::normalize(glm::cross(edge, up));
     EXPECT_LT(glm::length(vec3(normals[i]) - normal), 1e-5f) << i;
     EXPECT_NEAR(positions[i].z, i == 0 ? 0.0f : 0.25f, 1e-5f) << i;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(colors.pixel<float>(i, 0)[c], 0.5f + 0.5f * normal[c], 1e-5f) << "shows the normal";
+  }
+}
+
+TEST(PickProgram, AMissIsBlackAndNoInstance) {
+  SceneBuilder scene;
+  scene.add(quad({-1, -9, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)));
+  scene.camera(orthographic({0, 0, 5}, {0, 0, 0}, 1.0f));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
+  options.program = program::loadProgram("pick");
+  options.width = options.height = 2;
+  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
+  renderer.renderBatch(1);
+  const io::Image colors = renderer.film().download(0);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    EXPECT_THAT(colors.pixel<float>(i % 2, i / 2), testing::ElementsAre(0, 0, 0, 1)) << i;
+    EXPECT_EQ(renderer.film().plane(1).values[i], vec4(0)) << i;
   }
 }
 

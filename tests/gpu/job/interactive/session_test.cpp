@@ -532,7 +532,10 @@ TEST_F(SessionTest, PicksSolidsAndBoxes) {
   EXPECT_EQ(lesson->result().film->image(0).data, image) << "the program still finds its hit groups";
 }
 
-TEST_F(SessionTest, ExplainsASampleAsARender) {
+// They compile programs that record their rays.
+class SessionExplains : public SessionTest {};
+
+TEST_F(SessionExplains, ASampleAsARender) {
   const auto session = makeSession(request());
   session->step(0.01);  // a preview: its size and its film do not matter
   const uvec2 pixel(17, 12);
@@ -548,7 +551,7 @@ TEST_F(SessionTest, ExplainsASampleAsARender) {
   EXPECT_THROW(session->explain(pixel, 6), UsageError);
 }
 
-TEST_F(SessionTest, ExplainsTheEditedScene) {
+TEST_F(SessionExplains, TheEditedScene) {
   const auto session = makeSession(request());
   const uvec2 pixel(17, 12);
   const PixelExplanation before = session->explain(pixel, 1);
@@ -573,7 +576,7 @@ TEST_F(SessionTest, ExplainsTheEditedScene) {
   expectEqual(after, expected);
 }
 
-TEST_F(SessionTest, ExplainsFramesAndContinues) {
+TEST_F(SessionExplains, FramesAndContinues) {
   RenderRequest frames = request(4);
   frames.scene.clear();
   const auto session = makeSession(frames, "lessons/09_progressive");
