@@ -93,7 +93,7 @@ TEST(CompareTest, ComparesAlphaAsCoverageOverBlack) {
 
 TEST(CompareTest, CountsNonFinitePixels) {
   Image a = constant(4, 4, {0.5f, 0.5f, 0.5f});
-  const Image b = a;
+  Image b = a;
   a.samples<float>()[0] = std::numeric_limits<float>::quiet_NaN();
   a.samples<float>()[4] = std::numeric_limits<float>::infinity();
   const Comparison c = compareImages(a, b);
@@ -101,6 +101,10 @@ TEST(CompareTest, CountsNonFinitePixels) {
   EXPECT_EQ(c.rmse, 0.0);
   EXPECT_EQ(c.max8, 188.0);  // NaN becomes black
   EXPECT_TRUE(std::isfinite(c.flip));
+  b.samples<float>()[47] = 0.25f;  // the means are those of the 14 other pixels
+  const Comparison different = compareImages(a, b);
+  EXPECT_NEAR(different.rmse, 0.25 / std::sqrt(42.0), 1e-7);
+  EXPECT_NEAR(different.relMse, 0.0625 / (0.0625 + 0.01) / 42.0, 1e-7);
 }
 
 TEST(CompareTest, RejectsDifferentSizesAndInvalidDistances) {

@@ -55,7 +55,10 @@ TEST(ChooseCamera, UsesTheFirstSpecified) {
     EXPECT_THROW(chooseCamera(scene, request, 0), UsageError) << wrong;
   }
   scene.cameras.clear();
-  EXPECT_EQ(chooseCamera(scene, {}, 0).description, "automatic");
+  const CameraChoice automatic = chooseCamera(scene, {}, 0);
+  EXPECT_EQ(automatic.description, "automatic");
+  const vec3 toCenter = -eyeOf(automatic.camera);  // focused at the center of the scene
+  EXPECT_NEAR(automatic.camera.focusDistance, glm::dot(toCenter, directionOf(automatic.camera)), 1e-4f);
   request.name = "0";
   EXPECT_THROW(chooseCamera(scene, request, 0), UsageError);
 }
