@@ -134,7 +134,7 @@ TEST(SampleSearch, FirefliesRequireSamples) {
   frames.assignments.clear();
   EXPECT_EQ(problem("normals", few), "fireflies: at least 4 samples per pixel are required, not 3");
   EXPECT_THAT(problem("09_progressive", frames),
-              testing::StartsWith("fireflies: the program 'lessons/09_progressive' accumulates its frames"));
+              testing::AllOf(testing::StartsWith("fireflies: "), testing::HasSubstr("progressive' accumulates")));
   for (const auto& [program, request] : {std::pair("normals", few), {"09_progressive", frames}}) {
     Recorder observer;
     RenderJob job(searchEngine(), resolve(request, program::loadProgram(program)), observer);
