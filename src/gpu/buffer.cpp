@@ -16,7 +16,6 @@ namespace quintet::gpu {
 namespace {
 
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{8} << 20;  // of one step of a blocking copy
-constexpr double kMiB = 1024.0 * 1024.0;
 
 VkDeviceSize alignmentOf(const Context& context, const BufferOptions& options) {
   VkDeviceSize alignment = std::max<VkDeviceSize>(options.alignment, 16);

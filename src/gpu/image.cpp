@@ -11,8 +11,6 @@
 namespace quintet::gpu {
 namespace {
 
-constexpr double kMiB = 1024.0 * 1024.0;
-
 VkImageCreateInfo createInfo(const ImageOptions& options) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;

@@ -112,7 +112,6 @@ void Allocator::checkFreeMemory(VkDeviceSize bytes, const std::string& object) c
   const VkDeviceSize used = std::max(heap.usage, heap.statistics.blockBytes);
   const VkDeviceSize free = heap.budget - std::min(used, heap.budget);
   if (bytes <= free) return;
-  constexpr double kMiB = 1024.0 * 1024.0;
   throw MemoryError(fmt::format("cannot allocate {:.1f} MiB for {}: {:.1f} of the device's {:.1f} MiB are free",
                                 static_cast<double>(bytes) / kMiB, object, static_cast<double>(free) / kMiB,
                                 static_cast<double>(heap.budget) / kMiB));

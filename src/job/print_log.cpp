@@ -36,11 +36,12 @@ Printed printedLines(const render::LogContents& log, const program::PrintTable& 
   for (const render::LogRecord& record : log.records) {
     const std::span<const std::uint32_t> words = log.wordsOf(record);
     if (record.kind != shared::kLogPrint || words.empty() || words[0] >= table.size()) continue;
+    const program::PrintSite& site = table[words[0]];
+    if (words.size() != 1 + site.format.wordCount()) continue;
     if (result.lines.size() >= limit) {
       ++result.omitted;
       continue;
     }
-    const program::PrintSite& site = table[words[0]];
     std::string text = site.format.text(words.subspan(1));
     while (text.ends_with('\n')) text.pop_back();
     const std::optional<std::uint32_t> index = record.sampleIndex;

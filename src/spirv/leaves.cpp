@@ -9,7 +9,6 @@
 namespace quintet::spirv {
 namespace {
 
-using Kind = Type::Kind;
 constexpr std::size_t kMaxLeaves = 256;
 constexpr std::size_t kMaxElements = 16;  // of an array
 constexpr std::size_t kMaxDepth = 16;
@@ -36,7 +35,7 @@ bool Leaves::add(const Types& types, Id id, Detail detail, std::string name, Pat
   const Type& type = types.get(id);
   const std::size_t node = nodes_.size();
   const auto first = static_cast<std::uint32_t>(paths_.size());
-  nodes_.push_back({std::move(name), {first, first}, {}, type.kind == Kind::vector});
+  nodes_.push_back({std::move(name), {first, first}, {}, type.kind == Type::Kind::vector});
   const auto addPart = [&](Id part, std::uint32_t index, std::string partName) {
     nodes_[node].children.push_back(nodes_.size());
     path.push_back(index);
@@ -46,15 +45,16 @@ bool Leaves::add(const Types& types, Id id, Detail detail, std::string name, Pat
   };
   const bool divided = path.size() < kMaxDepth && (detail != Detail::members || path.empty());
   bool leaf = false;
-  if (divided && type.kind == Kind::structure && !type.members.empty()) {
+  if (divided && type.kind == Type::Kind::structure && !type.members.empty()) {
     for (std::uint32_t i = 0; i < type.members.size(); ++i) {
       const std::string& member = type.memberNames[i];
       if (!addPart(type.members[i], i, member.empty() ? fmt::format(".member {}", i) : "." + member)) return false;
     }
-  } else if (divided && type.kind == Kind::array && type.count > 0 && type.count <= kMaxElements) {
+  } else if (divided && type.kind == Type::Kind::array && type.count > 0 && type.count <= kMaxElements) {
     for (std::uint32_t i = 0; i < type.count; ++i)
       if (!addPart(type.element, i, fmt::format("[{}]", i))) return false;
-  } else if (divided && type.kind == Kind::vector && detail == Detail::components && type.count <= kComponents.size()) {
+  } else if (divided && type.kind == Type::Kind::vector && detail == Detail::components &&
+             type.count <= kComponents.size()) {
     for (std::uint32_t i = 0; i < type.count; ++i)
       if (!addPart(type.element, i, fmt::format(".{}", kComponents[i]))) return false;
   } else {

@@ -55,9 +55,12 @@ TEST(PrintLog, LinesBeyondTheLimitAreCounted) {
 
 TEST(PrintLog, OtherRecordsAreNoLines) {
   const std::uint32_t unknownSite = 2;
-  const Printed printed = printedLines(
-      logOf({{shared::kLogPrint + 1, {0, 1}}, {shared::kLogPrint, {unknownSite}}, {shared::kLogPrint, {}}}), table(),
-      {}, 10);
+  const Printed printed = printedLines(logOf({{shared::kLogPrint + 1, {0, 1}},
+                                              {shared::kLogPrint, {unknownSite}},
+                                              {shared::kLogPrint, {}},
+                                              {shared::kLogPrint, {0}},
+                                              {shared::kLogPrint, {1, 4}}}),
+                                       table(), {}, 10);  // the last two have too few and too many words
   EXPECT_TRUE(printed.lines.empty());
   EXPECT_EQ(printed.omitted, 0u);
 }
