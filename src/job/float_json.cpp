@@ -9,7 +9,9 @@
 
 namespace quintet::job {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}
 
 Json floatJson(float value) {
   if (std::isnan(value)) return "nan";

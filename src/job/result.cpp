@@ -136,9 +136,8 @@ void addFrame(RenderResult& result, const RenderResult& frame) {
 }
 
 render::FilmFile filmFileOf(const RenderResult& result) {
-  using Role = ProvenanceField::Role;
-  return {toFacts(result.provenance, Role::identity), toFacts(result.provenance, Role::note), result.film->state(),
-          result.plan};
+  return {toFacts(result.provenance, ProvenanceField::Role::identity),
+          toFacts(result.provenance, ProvenanceField::Role::note), result.film->state(), result.plan};
 }
 
 }  // namespace quintet::job

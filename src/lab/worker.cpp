@@ -222,9 +222,10 @@ class Worker : public job::Observer {
       send(withId(messageJson("error", error->message), error->id));
       return;
     }
-    const auto& [command, id] = std::get<PageMessage>(message.content);
-    const bool answered = guarded(id, [&] { std::visit([&](const auto& value) { execute(value, id); }, command); });
-    if (answered && !id.empty()) send(withId(R"({"event":"done"})", id));
+    const auto& page = std::get<PageMessage>(message.content);
+    const bool answered =
+        guarded(page.id, [&] { std::visit([&](const auto& value) { execute(value, page.id); }, page.command); });
+    if (answered && !page.id.empty()) send(withId(R"({"event":"done"})", page.id));
   }
 
   static bool opens(const Inbox::Message& message) {

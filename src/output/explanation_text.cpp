@@ -19,6 +19,8 @@
 namespace quintet::output {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 using job::EventValue;
 using job::ExplainedEvent;
 using job::PixelExplanation;
@@ -428,7 +430,6 @@ std::string explanationDiffText(const job::ExplanationDiff& diff, const std::str
 }
 
 std::string explanationDiffJson(const job::ExplanationDiff& diff, const std::string& a, const std::string& b) {
-  using Json = nlohmann::ordered_json;
   const auto entry = [](const job::ExplanationDifference& d) {
     Json json{{"location", d.location}, {"a", d.a}, {"b", d.b}};
     if (d.error) json["difference"] = job::floatJson(*d.error);

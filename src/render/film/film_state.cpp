@@ -132,9 +132,9 @@ bool areConsistent(const SampleCounts& counts, const std::vector<std::uint32_t>&
   const std::vector<SampleRange>& ranges = counts.ranges;
   if (ranges.size() != 1 || ranges[0].begin != 0 || ranges[0].end % kBatchSamples != 0) return false;
   // Sample indices have 32 bits.
-  constexpr std::uint32_t kMaxBatches = std::numeric_limits<std::uint32_t>::max() / kBatchSamples;
+  constexpr std::uint32_t kMostBatches = std::numeric_limits<std::uint32_t>::max() / kBatchSamples;
   const auto atLeast = [&](std::uint64_t least) {
-    return [=](std::uint32_t batches) { return batches >= least && batches <= kMaxBatches; };
+    return [=](std::uint32_t batches) { return batches >= least && batches <= kMostBatches; };
   };
   return std::ranges::all_of(counts.cellBatches, atLeast(counts.batches())) && std::ranges::all_of(plan, atLeast(0));
 }

@@ -105,7 +105,8 @@ TEST_F(BsdfFurnace, DiffuseTransmission) {
 TEST_F(BsdfFurnace, Anisotropy) {
   for (const auto& [strength, azimuth] : {std::pair{0.5f, 0.9f}, {1.0f, 0.0f}, {1.0f, 1.5f}})
     expectWhite(
-        "anisotropic metal", 0.03, [&](BsdfCase& c) { c.metallic = 1.0f, c.anisotropy = strength; }, azimuth);
+        "anisotropic metal", 0.03,
+        [&, strength = strength](BsdfCase& c) { c.metallic = 1.0f, c.anisotropy = strength; }, azimuth);
   const auto anisotropic = [](BsdfCase& c) { c.anisotropy = 0.8f; };
   expectWhite("anisotropic dielectric", 0.03, anisotropic);
   expectWhite("anisotropic thin wall", 0.03, [&](BsdfCase& c) { anisotropic(c), c.transmission = 1.0f, c.thin = 1; });

@@ -373,9 +373,10 @@ TEST(BuiltInProgram, EachOneShowsPixelsAtTheirPositions) {
     options.program = program::loadProgram(name);
     options.batches = 64;
     if (name == std::string("ao")) options.set = {"background=0,0,0"};
-    expectPixels(renderImage(scene, options),
-                 [&](vec2 pixel) { return pixel.x < corner.x && pixel.y < corner.y ? color : vec3(0.0f); },
-                 {.error = 0.01, .rounding = 1e-3});
+    expectPixels(
+        renderImage(scene, options),
+        [&, color = color](vec2 pixel) { return pixel.x < corner.x && pixel.y < corner.y ? color : vec3(0.0f); },
+        {.error = 0.01, .rounding = 1e-3});
   }
 }
 
