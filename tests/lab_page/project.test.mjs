@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the lab in Chromium: lessons and their tasks, programs, sharing, the whole page, and users who do not wait.
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { downloadOf, holdRequests, replaceInEditor, share, showTab, until, useBrowser, waitForColor, waitForImage, waitForSaved, watchSocket } from "./harness.mjs";
@@ -203,8 +203,15 @@ test("edits that cannot be saved are not lost without a question", async () => {
   await dialog.getByRole("button", { name: "Stay here" }).click();
   await page.locator(".cm-line", { hasText: "// unsaved" }).waitFor();
   await page.waitForFunction(() => document.querySelector(".lessons select").value.startsWith("20_"));
+  await page.route(programRequests, (route) => route.fulfill({ status: 500, contentType: "application/json", body: '{"error":"it cannot be read"}' }), { times: 1 });
   await chooseLesson(page, "01_first_ray");
   await dialog.getByRole("button", { name: "Discard the edits" }).click();
+  await page.locator(".toast.error", { hasText: "it cannot be read" }).waitFor();
+  await page.locator(".cm-line", { hasText: "// unsaved" }).waitFor({ state: "detached" });
+  await waitForSaved(page);
+  const copy = path.join(lab.server.folder, "lessons/20_lambert");
+  for (const file of readdirSync(copy)) assert.doesNotMatch(readFileSync(path.join(copy, file), "utf8"), /unsaved/, file);
+  await chooseLesson(page, "01_first_ray");
   await page.locator(".program-title", { hasText: "01_first_ray" }).waitFor();
 });
 
