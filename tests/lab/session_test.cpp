@@ -204,6 +204,35 @@ constexpr const char* kCount = R"(void main() { /**** RAY GENERATION SHADER ****
 }
 )";
 
+TEST_F(LabSession, RewindsToTheFirstFrameInTheSameProcess) {
+  save(kCount);
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+  page.send({{"do", "pause"}, {"id", 2}});
+  done(page, 2);
+  EXPECT_GT(colorOf(page.waitForImage(isLossless))[0], 2);
+  page.send({{"do", "rewind"}, {"id", 3}});
+  std::size_t processes = 0;
+  page.waitFor([&](const Json& event) {
+    processes += event.value("event", "") == "worker" || event.value("event", "") == "opened";
+    return event.value("event", "") == "done" && event.at("id") == 3;
+  });
+  EXPECT_EQ(processes, 0u) << "the program is not opened again";
+  const ReceivedImage first =
+      page.waitForImage([](const lab::ImageHeader& header) { return header.samples == 1 && isLossless(header); });
+  EXPECT_EQ(colorOf(first)[0], 0);
+  // It is still paused, and the next frame is the second one.
+  page.send({{"do", "advance"}});
+  const ReceivedImage second =
+      page.waitForImage([](const lab::ImageHeader& header) { return header.samples > 1 && isLossless(header); });
+  EXPECT_EQ(second.header.samples, 2u);
+  EXPECT_EQ(colorOf(second)[0], 1);
+}
+
 // A script that stands for ffmpeg: the video is its input. Only for servers that start while it exists.
 class FakeFfmpeg {
  public:

@@ -69,6 +69,13 @@ test("frames can be paused and stepped", async () => {
   }
   await page.getByRole("button", { name: "Play frames" }).click();
   await until(async () => (await frameOf(page)) > at + 3);
+
+  await pauseFrames(page);
+  const workers = lab.server.workers();
+  await page.getByRole("button", { name: "First frame" }).click();
+  await until(async () => (await frameOf(page)) === 0);
+  await page.locator(".image-facts", { hasText: /Frame 0 .*paused/ }).waitFor();
+  assert.deepEqual(lab.server.workers(), workers, "the same process renders");
 });
 
 test("a click explains the pixel: rays, payload and source lines", async () => {
