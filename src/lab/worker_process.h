@@ -21,7 +21,8 @@ struct WorkerProcess {
   int socket = -1;  // of the server; the caller closes it
 };
 
-// The worker inherits no other file of this process but standard error. Throws Error.
+// The worker inherits no other file of this process but standard error. On a CPU, its driver compiles fast instead of optimizing,
+// unless the environment variable GALLIVM_PERF exists. Throws Error.
 WorkerProcess startWorkerProcess(const std::filesystem::path& executable);
 
 // How the process ended; nothing while it runs. Does not wait. The process id is then free.

@@ -54,7 +54,7 @@ bool endsRetries(const interactive::Command& command) {
 bool overwrites(const interactive::Command& next, const interactive::Command& last) {
   using namespace interactive;
   if (next.index() != last.index()) return false;
-  if (isAny<SetSamples, SetToneMap, SetPrint>(next)) return true;
+  if (isAny<SetSamples, SetToneMap, SetPrint, Rewind>(next)) return true;
   if (isAny<Orbit, Pan, Zoom, interactive::Fly, Move>(next)) return false;  // they add up
   const std::string group = undoGroup(next);
   return !group.empty() && group == undoGroup(last);

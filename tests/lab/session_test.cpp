@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -203,6 +205,35 @@ constexpr const char* kCount = R"(void main() { /**** RAY GENERATION SHADER ****
   gsnSetPixel(vec4(float(frameID) / 255.0, float(gl_LaunchIDEXT.x) / 255.0, 0.0, 1.0));
 }
 )";
+
+TEST_F(LabSession, RewindsToTheFirstFrameInTheSameProcess) {
+  save(kCount);
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+  page.send({{"do", "pause"}, {"id", 2}});
+  done(page, 2);
+  EXPECT_GT(colorOf(page.waitForImage(isLossless))[0], 2);
+  page.send({{"do", "rewind"}, {"id", 3}});
+  std::size_t processes = 0;
+  page.waitFor([&](const Json& event) {
+    processes += event.value("event", "") == "worker" || event.value("event", "") == "opened";
+    return event.value("event", "") == "done" && event.at("id") == 3;
+  });
+  EXPECT_EQ(processes, 0u) << "the program is not opened again";
+  const ReceivedImage first =
+      page.waitForImage([](const lab::ImageHeader& header) { return header.samples == 1 && isLossless(header); });
+  EXPECT_EQ(colorOf(first)[0], 0);
+  // It is still paused, and the next frame is the second one.
+  page.send({{"do", "advance"}});
+  const ReceivedImage second =
+      page.waitForImage([](const lab::ImageHeader& header) { return header.samples > 1 && isLossless(header); });
+  EXPECT_EQ(second.header.samples, 2u);
+  EXPECT_EQ(colorOf(second)[0], 1);
+}
 
 // A script that stands for ffmpeg: the video is its input. Only for servers that start while it exists.
 class FakeFfmpeg {
@@ -465,6 +496,54 @@ TEST_F(LabSession, SurvivesAnEndlessShader) {
   // A correction starts it again, however early it comes.
   writeFile(folder_ / "loop/loop.rt.glsl", kPlain);
   EXPECT_THAT(colorOf(page.waitForImage(isLossless)), ::testing::ElementsAre(0, 255, 0));
+}
+
+// Sets an environment variable, or removes it, while it exists.
+class ScopedVariable {
+ public:
+  ScopedVariable(const char* name, const std::optional<std::string>& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  ~ScopedVariable() { set(before_); }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+ private:
+  void set(const std::optional<std::string>& value) const {
+    if (value)
+      ::setenv(name_, value->c_str(), 1);
+    else
+      ::unsetenv(name_);
+  }
+
+  const char* const name_;
+  std::optional<std::string> before_;
+};
+
+// The environment of a process: NAME=VALUE.
+std::vector<std::string> environmentOf(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/environ");
+  std::vector<std::string> variables;
+  for (std::string variable; std::getline(file, variable, '\0');) variables.push_back(variable);
+  return variables;
+}
+
+TEST_F(LabSession, DriversOfCpusCompileFastUnlessTheUserDecides) {
+  using ::testing::Contains;
+  const auto workerOf = [&](const std::optional<std::string>& value) {
+    const ScopedVariable variable("GALLIVM_PERF", value);
+    const LabProcess server = start();
+    PageClient page(server);
+    page.send(open());
+    page.waitFor("opened");
+    EXPECT_EQ(server.workers().size(), 1u);
+    return environmentOf(server.workers().front());
+  };
+  EXPECT_THAT(workerOf({}), Contains("GALLIVM_PERF=nopt").Times(1));
+  EXPECT_THAT(workerOf(""), Contains("GALLIVM_PERF=").Times(1));
+  EXPECT_THAT(workerOf("no_quad_lod"), ::testing::AllOf(Contains("GALLIVM_PERF=no_quad_lod").Times(1),
+                                                        ::testing::Not(Contains("GALLIVM_PERF=nopt"))));
 }
 
 TEST_F(LabSession, RestartsAKilledWorker) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the lab in Firefox: editing, an error and its correction, camera, parameters, and the check of a task. The other
-// tests of the page run in Chromium (page.test.mjs).
+// tests of the page run in Chromium.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";

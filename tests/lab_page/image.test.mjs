@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the lab in Chromium: the image, camera, parameters, frames, pixels, scenes, and files of the image.
 import assert from "node:assert/strict";
-import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
@@ -69,6 +70,13 @@ test("frames can be paused and stepped", async () => {
   }
   await page.getByRole("button", { name: "Play frames" }).click();
   await until(async () => (await frameOf(page)) > at + 3);
+
+  await pauseFrames(page);
+  const workers = lab.server.workers();
+  await page.getByRole("button", { name: "First frame" }).click();
+  await until(async () => (await frameOf(page)) === 0);
+  await page.locator(".image-facts", { hasText: /Frame 0 .*paused/ }).waitFor();
+  assert.deepEqual(lab.server.workers(), workers, "the same process renders");
 });
 
 test("a click explains the pixel: rays, payload and source lines", async () => {
@@ -165,5 +173,35 @@ test("a video is rendered with progress, can be canceled, and reports that ffmpe
   } finally {
     await own.stop();
     rmSync(bin, { recursive: true, force: true });
+  }
+});
+
+// Frame k of the first three has channel k of the color only.
+const kColors = "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(equal(ivec3(frameID), ivec3(0, 1, 2)), 1.0));\n}\n";
+
+test("a video of ffmpeg can be decoded, and has the frames of the program", { skip: process.env.FFMPEG ? false : "ffmpeg is not installed" }, async () => {
+  mkdirSync(path.join(lab.server.folder, "colors"));
+  writeFileSync(path.join(lab.server.folder, "colors/colors.rt.glsl"), kColors);
+  const page = await lab.open("#program=colors");
+  await waitForImage(page);
+  await share(page, "Video");
+  const dialog = page.getByRole("dialog", { name: "Video" });
+  await dialog.getByLabel("Frames", { exact: true }).fill("3");
+  for (const [format, magic] of [["mp4", /^....ftyp/s], ["webm", /^\x1a\x45\xdf\xa3/], ["gif", /^GIF89a/]]) {
+    await dialog.getByLabel("Format").selectOption(format);
+    const { name, content } = await downloadOf(page, () => dialog.getByRole("button", { name: "Render" }).click());
+    assert.equal(name, `colors.${format}`);
+    assert.match(content.toString("latin1", 0, 12), magic);
+    const file = path.join(lab.server.folder, name);
+    writeFileSync(file, content);
+    const decoded = spawnSync(process.env.FFMPEG, ["-v", "error", "-i", file, "-fps_mode", "passthrough", "-pix_fmt", "rgb24", "-f", "rawvideo", "-"], { maxBuffer: 1 << 26 });
+    assert.equal(decoded.status, 0, decoded.stderr.toString());
+    const frame = 320 * 180 * 3;
+    assert.equal(decoded.stdout.length, 3 * frame, format);
+    for (let k = 0; k < 3; ++k) {
+      const middle = k * frame + frame / 2 + (320 / 2) * 3;
+      const color = [...decoded.stdout.subarray(middle, middle + 3)];
+      assert.ok(color.every((value, channel) => (channel === k ? value > 220 : value < 35)), `frame ${k} of ${name}: ${color}`);
+    }
   }
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of the lab in Chromium: lessons and their tasks, programs, sharing, the whole page, and users who do not wait.
 import assert from "node:assert/strict";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { downloadOf, holdRequests, replaceInEditor, share, showTab, until, useBrowser, waitForColor, waitForImage, waitForSaved, watchSocket } from "./harness.mjs";
@@ -203,8 +203,15 @@ test("edits that cannot be saved are not lost without a question", async () => {
   await dialog.getByRole("button", { name: "Stay here" }).click();
   await page.locator(".cm-line", { hasText: "// unsaved" }).waitFor();
   await page.waitForFunction(() => document.querySelector(".lessons select").value.startsWith("20_"));
+  await page.route(programRequests, (route) => route.fulfill({ status: 500, contentType: "application/json", body: '{"error":"it cannot be read"}' }), { times: 1 });
   await chooseLesson(page, "01_first_ray");
   await dialog.getByRole("button", { name: "Discard the edits" }).click();
+  await page.locator(".toast.error", { hasText: "it cannot be read" }).waitFor();
+  await page.locator(".cm-line", { hasText: "// unsaved" }).waitFor({ state: "detached" });
+  await waitForSaved(page);
+  const copy = path.join(lab.server.folder, "lessons/20_lambert");
+  for (const file of readdirSync(copy)) assert.doesNotMatch(readFileSync(path.join(copy, file), "utf8"), /unsaved/, file);
+  await chooseLesson(page, "01_first_ray");
   await page.locator(".program-title", { hasText: "01_first_ray" }).waitFor();
 });
 
@@ -267,14 +274,17 @@ test("images of the program before are not shown as those of the new one", async
 });
 
 test("a check ends when another lesson is opened", async () => {
-  const page = await lab.open("#lesson=14_csg");
+  let silent = false; // a check does not end before the page ends it
+  const page = await lab.open("#lesson=14_csg", (opened) => opened.routeWebSocket(/\/ws$/, (socket) => void (silent || socket.connectToServer())));
+  await waitForImage(page);
   const check = page.locator(".task").first().getByRole("button", { name: "Check" });
+  silent = true;
   await check.click();
   await page.locator(".task-result", { hasText: "Rendering" }).waitFor();
   assert.ok(await page.locator(".task-check").evaluateAll((buttons) => buttons.every((button) => button.disabled)));
+  silent = false;
   await chooseLesson(page, "01_first_ray");
-  await page.getByRole("heading", { name: "Lesson 01" }).waitFor();
-  await page.locator(".tasks").waitFor();
+  await page.locator(".tasks[data-lesson='01_first_ray']").waitFor();
   await check.click();
   await page.locator(".task-result", { hasText: /(of|from) the solution/ }).first().waitFor();
 });

@@ -50,7 +50,7 @@ export class ImageBar {
       if (state) session.send({ do: "pause", on: !state.paused });
     });
     this.step = button("next", "Next frame", () => session.send({ do: "advance", frames: 1 }));
-    this.first = button("first", "First frame", () => session.send({ do: "restart" }));
+    this.first = button("first", "First frame", () => session.send({ do: "rewind" }));
     this.undo = button("undo", "Undo a change of camera or parameters", () => session.send({ do: "undo" }));
     this.redo = button("redo", "Redo a change of camera or parameters", () => session.send({ do: "redo" }));
     this.output.addEventListener("change", () => session.send({ do: "output", name: this.output.value }));

@@ -188,7 +188,7 @@ export class LessonPanel {
 
   private taskSection(lesson: Lesson, tasks: readonly LessonTask[]): Node | undefined {
     if (tasks.length === 0) return undefined;
-    return h("section", { class: "tasks", "aria-label": "Tasks" }, h("h3", {}, tasks.length === 1 ? "Task" : "Tasks"), tasks.map((task, i) => this.task(lesson, task, i + 1)));
+    return h("section", { class: "tasks", "aria-label": "Tasks", dataset: { lesson: lesson.name } }, h("h3", {}, tasks.length === 1 ? "Task" : "Tasks"), tasks.map((task, i) => this.task(lesson, task, i + 1)));
   }
 
   private task(lesson: Lesson, task: LessonTask, number: number): Node {

@@ -183,10 +183,15 @@ export class Workspace {
     return this.status === "saved";
   }
 
-  // Forgets all edits that are not saved.
+  // Forgets all edits that are not saved: the editors show what is on disk, as far as known.
   discard(): void {
     clearTimeout(this.timer);
-    for (const file of this.files) file.status = "saved";
+    for (const file of this.files) {
+      if (file.status === "saved") continue;
+      this.replaceText(file, file.base, true);
+      file.status = "saved";
+      file.message = "";
+    }
     this.handlers.onStatus();
   }
 

@@ -111,6 +111,9 @@ struct SetPrint {
   std::optional<PrintRequest> print;  // with pixels, or for all; unset: nothing is printed
 };
 
+// Discards the samples: refinement starts over, and a program that accumulates begins with frame 0. No step of undo.
+struct Rewind {};
+
 // Commands of the same kind that change the same thing, one after the other, are one step of undo, until EndDrag.
 struct EndDrag {};
 struct Undo {};
@@ -118,7 +121,7 @@ struct Redo {};
 
 using Command = std::variant<Orbit, Pan, Zoom, Fly, Frame, SetOrbitCenter, SetCamera, SetLens, SetProgram, SetParameter,
                              EditMaterial, EditLight, SetEnvironment, SetTransform, Move, SetFrame, SelectOutput,
-                             SetExposure, SetToneMap, SetSize, SetSamples, SetPrint, EndDrag, Undo, Redo>;
+                             SetExposure, SetToneMap, SetSize, SetSamples, SetPrint, Rewind, EndDrag, Undo, Redo>;
 
 // What a command changes: the kind of the command and its target. Commands of the same group, one after the other, are
 // one step of undo; an empty group is a step of its own.

@@ -169,6 +169,7 @@ constexpr std::pair<std::string_view, Parser> kParsers[] = {
      }},
     {"samples", [](JsonFields& f) -> Command { return SetSamples{f.count("count")}; }},
     {"print", parsePrint},
+    {"rewind", [](JsonFields&) -> Command { return Rewind{}; }},
     {"undo", [](JsonFields&) -> Command { return Undo{}; }},
     {"redo", [](JsonFields&) -> Command { return Redo{}; }},
 };

@@ -204,6 +204,11 @@ void Session::apply(const Command& command) {
     recovering([&] { setPrint(*print); });
     return;
   }
+  if (std::holds_alternative<Rewind>(command)) {
+    imageChanged_ = true;
+    restarted();
+    return;
+  }
   const bool isUndo = std::holds_alternative<Undo>(command), isRedo = std::holds_alternative<Redo>(command);
   if (isUndo && !canUndo()) throw UsageError("there is no step to undo");
   if (isRedo && !canRedo()) throw UsageError("there is no step to redo");
@@ -370,6 +375,7 @@ SessionState Session::changed(const Command& command) const {
       next.samples = c.samples;
     }
     void operator()(const SetPrint&) {}
+    void operator()(const Rewind&) {}
     void operator()(const EndDrag&) {}
     void operator()(const Undo&) {}
     void operator()(const Redo&) {}

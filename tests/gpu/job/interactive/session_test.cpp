@@ -915,6 +915,26 @@ TEST_F(SessionTest, FramesStartOverAfterEdits) {
   EXPECT_EQ(shown(), film(3, {40, 24}));
 }
 
+TEST_F(SessionTest, RewindStartsWithTheFirstFrame) {
+  RenderRequest frames = request(3);
+  frames.scene.clear();
+  const auto session = makeSession(frames, "lessons/09_progressive");
+  session->refine();
+  const std::vector<std::byte> complete = session->result().film->image(0).data;
+  const std::uint64_t restarts = session->restarts();
+  session->apply(Rewind{});
+  EXPECT_EQ(session->restarts(), restarts + 1);
+  EXPECT_FALSE(session->canUndo());
+  EXPECT_FALSE(session->hasFullSize()) << "the frames are discarded";
+  EXPECT_EQ(session->secondsUntilWork(), 0);
+  const std::vector<Event> events = session->step(0);
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_EQ(find<ImageUpdated>(events)->samples, 1u);
+  EXPECT_NE(find<Restarted>(events), nullptr);
+  session->refine();
+  EXPECT_EQ(session->result().film->image(0).data, complete);
+}
+
 // A program on disk that writes one color.
 class SessionReload : public SessionTest {
  protected:

@@ -88,6 +88,12 @@ TEST(CommandJson, ReadsThePixelsThatPrint) {
   EXPECT_EQ(errorOf(R"({"do":"print","x":3})"), "'y' is missing");
 }
 
+TEST(CommandJson, ReadsCommandsWithoutValues) {
+  EXPECT_TRUE(std::holds_alternative<Rewind>(parse(R"({"do":"rewind"})")));
+  EXPECT_TRUE(std::holds_alternative<Undo>(parse(R"({"do":"undo"})")));
+  EXPECT_THAT(errorOf(R"({"do":"rewind","frame":3})"), HasSubstr("unknown key 'frame'"));
+}
+
 TEST(CommandJson, RejectsMistakes) {
   EXPECT_EQ(errorOf(R"({"do":"orbti"})"), "unknown command 'orbti' (did you mean 'orbit'?)");
   EXPECT_EQ(errorOf(R"({"do":"refin"})"), "unknown command 'refin' (did you mean 'refine'?)");
