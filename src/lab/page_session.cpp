@@ -134,7 +134,7 @@ void PageSession::startWorker() {
   try {
     worker_ = std::make_shared<Worker>(page_.get_executor(), startWorkerProcess(options_.worker));
   } catch (const std::exception& error) {
-    toPage({false, messageJson("error", error.what())});
+    perform(supervisor_.workerMissing(error.what()));
     return;
   }
   toWorker(FrameKind::control, settingsJson(options_.settings));

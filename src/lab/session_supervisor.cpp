@@ -106,6 +106,13 @@ SessionSupervisor::Actions SessionSupervisor::workerEnded(double now, const Work
   return actions;
 }
 
+SessionSupervisor::Actions SessionSupervisor::workerMissing(const std::string& message) {
+  state_ = State::ended;
+  Actions actions;
+  actions.toPage.push_back(workerJson("crashed", message, restarts_));
+  return actions;
+}
+
 SessionSupervisor::Actions SessionSupervisor::tick(double now) {
   Actions actions;
   if (state_ != State::running) return actions;

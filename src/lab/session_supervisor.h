@@ -49,6 +49,8 @@ class SessionSupervisor {
     compiling_ = false;
   }
   Actions workerEnded(double now, const WorkerEnd& end);
+  // The system could not start a worker. The next command of the page tries it again.
+  Actions workerMissing(const std::string& message);
   // Call it about once per second.
   Actions tick(double now);
 

@@ -66,6 +66,21 @@ TEST_F(SessionSupervisorTest, RestartsAfterACrashWithTheViewAndDefaultParameters
   EXPECT_FALSE(open.contains("id"));
 }
 
+TEST_F(SessionSupervisorTest, TriesAgainWithTheNextCommandIfAWorkerCannotBeStarted) {
+  open();
+  EXPECT_TRUE(supervisor_.workerEnded(3, {.signal = SIGSEGV}).start);
+  const auto actions = supervisor_.workerMissing("no processes left");
+  EXPECT_FALSE(actions.start);
+  EXPECT_FALSE(actions.end);
+  EXPECT_THAT(states(actions), ElementsAre("crashed"));
+  EXPECT_EQ(only(actions.toPage).at("message"), "no processes left");
+  EXPECT_FALSE(supervisor_.tick(200).start);
+  const auto next = supervisor_.pageSent(201, R"({"do":"zoom","factor":2})");
+  EXPECT_TRUE(next.start);
+  EXPECT_THAT(states(next), ElementsAre("started"));
+  EXPECT_EQ(next.toWorker.size(), 2u) << "what was open, and the command";
+}
+
 TEST_F(SessionSupervisorTest, KeepsParametersIfTheWorkerWasKilled) {
   open();
   const auto actions = supervisor_.workerEnded(3, {.signal = SIGKILL});
