@@ -122,6 +122,8 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     copy.depth = info.maxPipelineRayRecursionDepth;
     const auto* flags = findInChain<Flags2>(info.pNext, kPipelineFlags2);
     copy.isLibrary = ((flags ? flags->flags : info.flags) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
+    copy.stages.reserve(info.stageCount);
+    copy.groups.reserve(info.groupCount);
     const std::scoped_lock lock(mutex_);
     for (std::uint32_t s = 0; s < info.stageCount; ++s) {
       const VkPipelineShaderStageCreateInfo& stage = info.pStages[s];

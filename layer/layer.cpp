@@ -36,6 +36,17 @@ std::shared_mutex mutex;
 std::map<Key, std::shared_ptr<Instance>> instances;
 std::map<Key, std::shared_ptr<DeviceEntry>> devices;
 
+// Runs when the process exits. Applications can exit without destroying their devices: the reports are then completed here. The
+// Vulkan objects of the layer stay, because the driver can be finalized already, and so can be what messengers use.
+__attribute__((destructor)) void finishReports() {
+  for (const auto& [key, instance] : instances) instance->messages.removeMessengers();
+  for (const auto& [key, entry] : devices) entry->device->deliverAll();
+  for (const auto& [key, instance] : instances) {
+    instance->worker.waitForAll();
+    instance->messages.finish();
+  }
+}
+
 template <class Handle>
 std::shared_ptr<Instance> instanceOf(Handle handle) {
   const std::shared_lock lock(mutex);

@@ -53,8 +53,11 @@ Messages::Messages(const Settings& settings)
   }
 }
 
-Messages::~Messages() {
+Messages::~Messages() { finish(); }
+
+void Messages::finish() {
   const std::scoped_lock lock(mutex_);
+  if (std::exchange(finished_, true)) return;
   std::string counts;
   for (const Known& known : known_)
     if (known.count > 1)
@@ -78,6 +81,11 @@ void Messages::addMessenger(VkDebugUtilsMessengerEXT handle, const VkDebugUtilsM
 void Messages::removeMessenger(VkDebugUtilsMessengerEXT handle) {
   const std::scoped_lock lock(mutex_);
   std::erase_if(messengers_, [&](const Messenger& messenger) { return messenger.handle == handle; });
+}
+
+void Messages::removeMessengers() {
+  const std::scoped_lock lock(mutex_);
+  messengers_.clear();
 }
 
 void Messages::report(const std::vector<Diagnostic>& diagnostics, const MessageObject& object,

@@ -28,11 +28,13 @@ struct MessageObject {
 class Messages {
  public:
   explicit Messages(const Settings& settings);
-  ~Messages();  // writes the counts and the file
+  ~Messages();    // as finish()
+  void finish();  // writes the counts and the file, once
   Messages(const Messages&) = delete;
 
   void addMessenger(VkDebugUtilsMessengerEXT handle, const VkDebugUtilsMessengerCreateInfoEXT& info);
   void removeMessenger(VkDebugUtilsMessengerEXT handle);
+  void removeMessengers();
 
   // `sources`: texts of the files that diagnostics name, from the modules.
   void report(const std::vector<Diagnostic>& diagnostics, const MessageObject& object,
@@ -62,6 +64,7 @@ class Messages {
   std::vector<check::SuppressedDiagnostic> suppressed_;
   std::map<std::string, std::string> sources_;
   std::string text_;  // of the file
+  bool finished_ = false;
   bool fileFailed_ = false;
 };
 

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "check/flow/pipeline_spaces.h"
+#include "check/rules/across_stages/payload_receivers.h"
 #include "check/rules/rules.h"
 
 namespace quintet::check {
@@ -55,9 +56,10 @@ void runRulesWithinStages(const CheckInput& input, const ProgramStageContext* pr
 
 // The rules that hold for every pipeline.
 RecursionNeeds runGeneralRules(const CheckInput& input, const PipelineSpaces& spaces, Report& report) {
-  checkPayloadTypes(input, report);
-  checkPayloadMembers(input, report);
-  checkPayloadInputs(input, report);
+  const PayloadReceivers receivers(input.graph);
+  checkPayloadTypes(input, receivers, report);
+  checkPayloadMembers(input, receivers, report);
+  checkPayloadInputs(input, receivers, report);
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
   checkCallableData(input, report);
@@ -140,7 +142,7 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
 
 // The rules that compare what is known, if a stage cannot be analyzed.
 void runRulesOfKnownStages(const CheckInput& input, Report& report) {
-  checkPayloadTypes(input, report);
+  checkPayloadTypes(input, PayloadReceivers(input.graph), report);
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
   checkArguments(input, report);
@@ -302,9 +304,10 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
   return check(program, compile(program, compiler, defines), scene, limits, features);
 }
 
-CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits) {
+CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits,
+                         bool mergesEqual) {
   const Stopwatch clock;
-  const PipelineGraph graph(std::move(groups), modules);
+  const PipelineGraph graph(std::move(groups), modules, mergesEqual);
   const std::optional<program::SceneFacts> facts = factsOf(graph.groups);
   const CheckInput input{graph, facts ? &*facts : nullptr, limits};
   Report report;

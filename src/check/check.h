@@ -57,8 +57,10 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
 
 // Checks raw modules with the rules that hold for every pipeline (rules/rules.h). A stage that cannot be analyzed, or that
 // has a problem, is not reported here; the rules that need all stages are then left out. Locations without a line name the
-// module, and the text names the SPIR-V id.
-CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits);
+// module, and the text names the SPIR-V id. `mergesEqual`: equal traces and stages are followed once (pipelines with thousands
+// of hit groups); without it, the same diagnostics take quadratic time.
+CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> modules, const DeviceLimits& limits,
+                         bool mergesEqual = true);
 
 // Runs the rules within one stage that hold for every pipeline.
 std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context);

@@ -37,23 +37,24 @@ std::span<const Site> sitesOf(const std::vector<Site>& sites, std::size_t stage)
 }  // namespace
 
 PipelineGraph::PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled)
-    : groups(groupsOf(program)), usesLibrary(true), hasParameters_(true) {
+    : groups(groupsOf(program)), usesLibrary(true), mergesEqual(true), hasParameters_(true) {
   context_ = [&program](const std::string& file, const program::SceneFacts* scene, ParameterUse use) {
     return valueContext(program, file, scene, use);
   };
-  for (const program::CompiledProgram::Stage& stage : compiled.stages) stages.push_back({stage.file, stage.kind, {}});
+  for (const program::CompiledProgram::Stage& stage : compiled.stages)
+    stages.push_back({stage.file, stage.kind, {}, {}, false});
   readStages([&](std::size_t i) { return compiled.stages[i].spirv; }, std::vector<std::string>(stages.size()));
 }
 
-PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> modules)
-    : groups(std::move(given)), usesLibrary(false) {
+PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> modules, bool merges)
+    : groups(std::move(given)), usesLibrary(false), mergesEqual(merges) {
   context_ = [this](const std::string& file, const program::SceneFacts*, ParameterUse) {
     return groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file)
                                                           : spirv::ValueContext{};
   };
   std::vector<std::string> problems;
   for (const ModuleStage& module : modules) {
-    stages.push_back({module.name, module.kind, {}});
+    stages.push_back({module.name, module.kind, {}, {}, module.isStub});
     problems.push_back(module.problem);
   }
   readStages([&](std::size_t i) { return modules[i].spirv; }, std::move(problems));
@@ -79,8 +80,9 @@ void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(st
     if (!errors[i].empty() && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);
   }
   compareRecords();
+  TargetsOfArguments known;
   for (std::size_t i = 0; i < stages.size(); ++i)
-    if (stages[i].facts) addTraces(i), addCalls(i);
+    if (stages[i].facts) addTraces(i, known), addCalls(i);
 }
 
 void PipelineGraph::compareRecords() {
@@ -146,61 +148,81 @@ void PipelineGraph::addEdge(std::vector<Edge>& edges, const std::string& file, E
   edges.push_back(edge);
 }
 
-void PipelineGraph::addTraces(std::size_t stage) {
+void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
   for (const spirv::TraceFacts& trace : stages[stage].facts->traces()) {
-    TraceSite site{stage, &trace, {}, {}, {}};
+    TraceSite site{stage, &trace, 0, {}, {}, false, false, {}};
     if (auto swapped = findSwappedArguments(*stages[stage].facts, trace, rayCount()); !swapped.texts.empty()) {
       site.swapped = std::move(swapped.texts);
       site.trace = &intended_.emplace_back(std::move(swapped.intended));
     }
-    addMisses(site);
-    addHits(site);
+    site.targets = targetsOf(*site.trace, known);
+    const TraceTargets& found = targets[site.targets];
+    site.edges = found.edges;
+    site.hits = found.hits;
+    site.assumesHits = found.assumesHits;
+    site.assumesMisses = found.assumesMisses;
     traces.push_back(std::move(site));
   }
 }
 
-void PipelineGraph::addMisses(TraceSite& site) {
-  const spirv::ArgumentValues& miss = site.trace->miss;
+std::size_t PipelineGraph::targetsOf(const spirv::TraceFacts& trace, TargetsOfArguments& known) {
+  const auto [found, isNew] =
+      known.try_emplace({trace.flags, trace.mask, trace.offset, trace.stride, trace.miss}, targets.size());
+  if (!isNew && mergesEqual) return found->second;
+  TraceTargets& added = targets.emplace_back();
+  addMisses(trace, added);
+  addHits(trace, added);
+  return targets.size() - 1;
+}
+
+void PipelineGraph::addMisses(const spirv::TraceFacts& trace, TraceTargets& added) const {
+  const spirv::ArgumentValues& miss = trace.miss;
   const std::vector<program::MissShader>& misses = groups.misses;
   const bool only = !groups.tablesKnown && misses.size() == 1 && sameMissRecord_;
-  site.assumesMisses = !groups.tablesKnown && !misses.empty() && !only;
+  added.assumesMisses = !groups.tablesKnown && !misses.empty() && !only;
   for (std::size_t i = 0; i < misses.size(); ++i) {
     const bool reached = !groups.tablesKnown || !miss.known ||
                          std::ranges::any_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
     if (reached)
-      addEdge(site.edges, misses[i].file, {0, Role::miss, only || (groups.tablesKnown && miss.certain()), {}, i});
+      addEdge(added.edges, misses[i].file, {0, Role::miss, only || (groups.tablesKnown && miss.certain()), {}, i});
   }
 }
 
-void PipelineGraph::addHits(TraceSite& site) {
-  if (groups.hitRecords == HitRecords::byRecord) return addHitsByRecord(site);
+void PipelineGraph::addHits(const spirv::TraceFacts& trace, TraceTargets& added) const {
+  if (groups.hitRecords == HitRecords::byRecord) return addHitsByRecord(trace, added);
+  const std::vector<std::size_t> rays = rayTypes(trace);
   for (std::size_t group = 0; group < groups.hitGroups.size(); ++group)
-    for (const std::size_t ray : rayTypes(*site.trace)) addHit(site, {group, ray}, site.trace->offset.certain());
+    for (const std::size_t ray : rays) addHit(trace, {group, ray}, trace.offset.certain(), added);
 }
 
-void PipelineGraph::addHit(TraceSite& site, HitGroupRay hit, bool exact) {
-  const spirv::TraceFacts& trace = *site.trace;
+void PipelineGraph::addHit(const spirv::TraceFacts& trace, HitGroupRay hit, bool exact, TraceTargets& added) const {
   if (groups.groupsKnown && trace.flags.mustHave(hasIntersection(hit.group) ? kFlagSkipAabbs : kFlagSkipTriangles))
     return;
-  site.hits.push_back(hit);
+  added.hits.push_back(hit);
   const program::HitShaders& files = shaders(hit);
-  if (!site.skipsClosestHit()) addEdge(site.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
-  if (!trace.flags.mustHave(kFlagOpaque)) addEdge(site.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
-  addEdge(site.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
+  if (!trace.flags.mustHave(kFlagSkipClosestHit))
+    addEdge(added.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
+  if (!trace.flags.mustHave(kFlagOpaque)) addEdge(added.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
+  addEdge(added.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
 }
 
 // With instances and constant arguments, the records are known; otherwise any group can be hit.
-void PipelineGraph::addHitsByRecord(TraceSite& site) {
-  const spirv::TraceFacts& trace = *site.trace;
+void PipelineGraph::addHitsByRecord(const spirv::TraceFacts& trace, TraceTargets& added) const {
   const std::set<std::size_t> records = recordsOf(trace);
   const bool known = groups.tablesKnown && groups.instances && trace.offset.known && trace.stride.known;
   for (std::size_t group = 0; group < groups.hitGroups.size(); ++group)
-    if (!known || records.contains(group)) addHit(site, {group, 0}, known ? trace.offset.certain() : true);
-  const bool others = !groups.tablesKnown && !sameHitRecords_ && !site.hits.empty();  // records without shaders
-  site.assumesHits = !known && (site.hits.size() > 1 || others);
-  if (!site.assumesHits) return;
-  for (Edge& edge : site.edges)
+    if (!known || records.contains(group)) addHit(trace, {group, 0}, known ? trace.offset.certain() : true, added);
+  const bool others = !groups.tablesKnown && !sameHitRecords_ && !added.hits.empty();  // records without shaders
+  added.assumesHits = !known && (added.hits.size() > 1 || others);
+  if (!added.assumesHits) return;
+  for (Edge& edge : added.edges)
     if (edge.role != Role::miss) edge.exact = false;
+}
+
+std::span<const Edge> edgesOf(std::span<const Edge> edges, HitGroupRay hit) {
+  const auto first = std::ranges::partition_point(edges, [](const Edge& edge) { return edge.role == Role::miss; });
+  const auto found = std::ranges::equal_range(first, edges.end(), hit, {}, &Edge::hit);
+  return {found.begin(), found.end()};
 }
 
 std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) const {
@@ -294,21 +316,21 @@ std::set<std::size_t> PipelineGraph::reachableStages() const {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].kind == shader::Stage::rayGeneration) open.push_back(i);
-  const auto follow = [&](const auto& sites) {
-    for (const auto& site : sites)
-      for (const Edge& edge : site.edges)
-        if (!reached.contains(edge.stage)) open.push_back(edge.stage);
-  };
+  std::vector<bool> followed(targets.size(), false);
   while (!open.empty()) {
     const std::size_t next = open.back();
     open.pop_back();
     if (!reached.insert(next).second) continue;
-    follow(tracesOf(next));
-    follow(callsOf(next));
-    for (const TraceSite& site : tracesOf(next))
+    for (const CallSite& site : callsOf(next))
+      for (const Edge& edge : site.edges) open.push_back(edge.stage);
+    for (const TraceSite& site : tracesOf(next)) {
+      if (followed[site.targets]) continue;
+      followed[site.targets] = true;
+      for (const Edge& edge : site.edges) open.push_back(edge.stage);
       for (const HitGroupRay hit : site.hits)
         if (const PipelineStage* anyHit = stage(shaders(hit).anyHit))
           open.push_back(static_cast<std::size_t>(anyHit - stages.data()));
+    }
   }
   return reached;
 }

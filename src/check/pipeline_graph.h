@@ -6,13 +6,17 @@
 #ifndef QUINTET_CHECK_PIPELINE_GRAPH_H
 #define QUINTET_CHECK_PIPELINE_GRAPH_H
 
+#include <array>
+#include <compare>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "check/pipeline_groups.h"
 #include "check/value_context.h"
@@ -34,6 +38,7 @@ struct ModuleStage {
   std::vector<std::uint32_t> spirv;  // one entry point, optimized (shader/optimizer.h)
   std::string problem;               // why there is no SPIR-V; empty if there is
   bool malformed = false;  // the problem is a mistake of the module, not something that is unknown to SPIRV-Tools
+  bool isStub = false;     // the module has no statements: a variant of a shader without its code
 };
 
 struct PipelineStage {
@@ -41,12 +46,14 @@ struct PipelineStage {
   shader::Stage kind = shader::Stage::rayGeneration;
   std::unique_ptr<spirv::StageFacts> facts;  // null if the module cannot be analyzed
   std::string problem = {};                  // why not, or what of it is not followed
+  bool isStub = false;                       // as in ModuleStage
 };
 
 // A hit group for one ray type: indices in PipelineGroups::hitGroups and PipelineGroups::rays.
 struct HitGroupRay {
   std::size_t group = 0;
   std::size_t ray = 0;
+  auto operator<=>(const HitGroupRay&) const = default;
 };
 
 enum class Role { miss, closestHit, anyHit, intersection, callable };
@@ -60,15 +67,27 @@ struct Edge {
   std::size_t index = 0;  // for misses and callables
 };
 
-struct TraceSite {
-  std::size_t stage = 0;
-  const spirv::TraceFacts* trace = nullptr;  // as intended, if arguments are swapped
-  std::vector<Edge> edges;
-  std::vector<HitGroupRay> hits;     // that a hit can use
-  std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
+// What traces with equal arguments can run. Pipelines of engines have thousands of traces and thousands of hit groups, but
+// few different arguments.
+struct TraceTargets {
+  std::vector<Edge> edges;        // miss shaders, then those of hit groups in the order of `hits`
+  std::vector<HitGroupRay> hits;  // that a hit can use, in their order
   // One of the hit groups or miss shaders runs, or a record without shaders, but it is unknown which one: the layout of the
   // table is unknown.
   bool assumesHits = false, assumesMisses = false;
+};
+
+// The edges to the shaders of a hit group. `edges` is in the order of TraceTargets.
+std::span<const Edge> edgesOf(std::span<const Edge> edges, HitGroupRay hit);
+
+struct TraceSite {
+  std::size_t stage = 0;
+  const spirv::TraceFacts* trace = nullptr;  // as intended, if arguments are swapped
+  std::size_t targets = 0;                   // in PipelineGraph::targets
+  std::span<const Edge> edges;               // as the targets have them
+  std::span<const HitGroupRay> hits;
+  bool assumesHits = false, assumesMisses = false;
+  std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
 };
 
@@ -81,15 +100,17 @@ struct CallSite {
 struct PipelineGraph {
   // Reads the modules in parallel. `program` must outlive the graph.
   PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled);
-  // Of raw modules.
-  PipelineGraph(PipelineGroups groups, std::span<const ModuleStage> modules);
+  // Of raw modules. `mergesEqual`: equal traces and stages are followed once, which changes only the time.
+  PipelineGraph(PipelineGroups groups, std::span<const ModuleStage> modules, bool mergesEqual = true);
 
   const PipelineGroups groups;
   const bool usesLibrary;  // the stages include <quintet/…>, so structures with its names are those of the library
+  const bool mergesEqual;
   std::vector<PipelineStage> stages;
   std::vector<TraceSite> traces;  // in the order of their stages
-  std::vector<CallSite> calls;    // in the order of their stages
-  std::string error;              // first module that cannot be analyzed completely, and the reason; empty if all can
+  std::deque<TraceTargets> targets;
+  std::vector<CallSite> calls;  // in the order of their stages
+  std::string error;            // first module that cannot be analyzed completely, and the reason; empty if all can
 
   std::size_t rayCount() const { return groups.rays.size(); }
   const PipelineStage* stage(const std::string& file) const;  // null if unknown
@@ -144,13 +165,17 @@ struct PipelineGraph {
 
   // Reads module i, which `words` returns, if it is not empty.
   void readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words, std::vector<std::string> errors);
+  // The targets by the arguments that select them: flags, mask, offset, stride, miss index.
+  using TargetsOfArguments = std::map<std::array<spirv::ArgumentValues, 5>, std::size_t>;
+
   void compareRecords();
-  void addTraces(std::size_t stage);
+  void addTraces(std::size_t stage, TargetsOfArguments& known);
   void addCalls(std::size_t stage);
-  void addMisses(TraceSite& site);
-  void addHits(TraceSite& site);
-  void addHit(TraceSite& site, HitGroupRay hit, bool exact);
-  void addHitsByRecord(TraceSite& site);
+  std::size_t targetsOf(const spirv::TraceFacts& trace, TargetsOfArguments& known);
+  void addMisses(const spirv::TraceFacts& trace, TraceTargets& added) const;
+  void addHits(const spirv::TraceFacts& trace, TraceTargets& added) const;
+  void addHit(const spirv::TraceFacts& trace, HitGroupRay hit, bool exact, TraceTargets& added) const;
+  void addHitsByRecord(const spirv::TraceFacts& trace, TraceTargets& added) const;
   void addEdge(std::vector<Edge>& edges, const std::string& file, Edge edge) const;
 };
 

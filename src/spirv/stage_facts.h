@@ -7,6 +7,7 @@
 #ifndef QUINTET_SPIRV_STAGE_FACTS_H
 #define QUINTET_SPIRV_STAGE_FACTS_H
 
+#include <compare>
 #include <functional>
 #include <memory>
 #include <unordered_map>
@@ -33,6 +34,8 @@ struct ArgumentValues {
   std::optional<std::uint32_t> atLeast(std::uint32_t count) const;
   bool mayHave(std::uint32_t bits) const;   // one of the bits can be set
   bool mustHave(std::uint32_t bits) const;  // all bits are set in each value
+
+  auto operator<=>(const ArgumentValues&) const = default;
 };
 
 // A traceRayEXT.

@@ -191,6 +191,30 @@ std::string Types::describe(Id id) const {
   return text + (type.members.size() > kMaxMembers ? " ... }" : " }");
 }
 
+std::string Types::signature(Id id) const {
+  std::string text;
+  addSignature(id, 0, text);
+  constexpr std::size_t kMaxSignature = 1 << 14;
+  return text.size() > kMaxSignature ? std::string() : text;
+}
+
+void Types::addSignature(Id id, int depth, std::string& text) const {
+  constexpr std::size_t kEnough = 1 << 15;  // too long in any case
+  if (text.size() > kEnough) return;
+  if (depth > kMaxNesting) return text.append(kEnough, '?'), void();
+  const Type& type = get(id);
+  text += fmt::format("{}:{}:{}:{}(", static_cast<int>(type.kind), type.width, type.isSigned ? 1 : 0, type.count);
+  if (type.kind == Kind::structure) {
+    for (std::size_t i = 0; i < type.members.size(); ++i) {
+      addSignature(type.members[i], depth + 1, text);
+      text += type.memberNames[i] + ";";
+    }
+  } else if (type.element != 0 && type.kind != Kind::pointer) {
+    addSignature(type.element, depth + 1, text);
+  }
+  text += ")";
+}
+
 std::string Types::memberName(Id id, std::uint32_t member) const {
   const Type& type = get(id);
   if (type.kind != Kind::structure) return "value";

@@ -59,6 +59,9 @@ class Types {
   std::string nameOf(Id id) const;
   // As nameOf, but a structure with its members: "struct Hit { vec3 color; bool hit; }".
   std::string describe(Id id) const;
+  // A text that is equal for types that differ from no other type, or from all others in the same way (differenceOf). Empty
+  // if the type is nested too deeply.
+  std::string signature(Id id) const;
   // "member 2 'color'" for a structure, "value" for any other type.
   std::string memberName(Id id, std::uint32_t member) const;
 
@@ -67,6 +70,8 @@ class Types {
   void setMemberName(Id id, std::uint32_t member, std::string name);
 
  private:
+  void addSignature(Id id, int depth, std::string& text) const;
+
   std::unordered_map<Id, Type> types_;
 };
 

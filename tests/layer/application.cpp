@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
@@ -118,6 +120,7 @@ class Vulkan {
     buildStructures();
     createLayout();
     createPipeline();
+    if (app_.submissions == 0) return;
     createTable();
     trace();
   }
@@ -532,6 +535,7 @@ class Vulkan {
     run_.creationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run_.creationCpuSeconds = threadSeconds() - cpu;
     for (std::thread& other : others) other.join();
+    if (app_.exit != Exit::no) std::exit(0);
     VkDebugUtilsObjectNameInfoEXT name{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,
                                        VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), "main"};
     deviceFunction<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT")(device_, &name);
@@ -686,9 +690,21 @@ void main() { payload = Payload(vec3(weights, 0.25), gl_HitTEXT); }
   return app;
 }
 
+namespace {
+
+// Older than the objects of the layer, so destroyed after them.
+std::unique_ptr<Vulkan> destroyedLate;
+
+}  // namespace
+
 RunResult runApplication(const Application& application) {
   RunResult result;
   try {
+    if (application.exit == Exit::destroysLate) {
+      destroyedLate = std::make_unique<Vulkan>(application, result);
+      destroyedLate->execute();
+    }
+    if (application.exit == Exit::withoutDestroying) (new Vulkan(application, result))->execute();
     Vulkan vulkan(application, result);
     vulkan.execute();
   } catch (const std::exception& error) {

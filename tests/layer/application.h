@@ -23,6 +23,9 @@ enum class Modules {
 };
 enum class Trace { direct, indirect, indirect2 };
 
+// How the application ends its process: without destroying anything, or destroying all with its static objects.
+enum class Exit { no, withoutDestroying, destroysLate };
+
 // What the application does. The defaults are correct.
 struct Application {
   // GLSL by file: "a.rgen". A file ".spvasm" is SPIR-V assembly. Two lines precede GLSL, so its first line is line 3.
@@ -53,9 +56,11 @@ struct Application {
     std::uint64_t offset = 0, stride = 0, size = 0;
   };
   std::function<void(std::vector<std::byte>& bytes, std::vector<Region>& regions)> editTable;
-  std::uint32_t submissions = 1;  // of the same trace
+  std::uint32_t submissions = 1;  // of the same trace; 0 also creates no table
   Trace trace = Trace::direct;    // which command
   std::uint32_t width = 8;        // 0 traces nothing: for tables that crash a driver
+
+  Exit exit = Exit::no;  // with status 0, after the creation of the pipeline
 
   std::vector<std::string> layers;
 };

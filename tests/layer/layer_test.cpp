@@ -463,6 +463,14 @@ TEST(Layer, AppliesSpecializationConstants) {
   EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q507"));
 }
 
+// Devices can be destroyed when the process exits, after the objects of libraries.
+TEST(Layer, WorksWhileStaticObjectsAreDestroyed) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  Application app = withLayer();
+  app.exit = Exit::destroysLate;
+  EXPECT_EXIT(runApplication(app), testing::ExitedWithCode(0), "");
+}
+
 // Engines create a stage for each hit group, from few modules. What they share is checked, and reported, once.
 TEST(Layer, ChecksRepeatedStagesOnce) {
   Application app = withLayer();
@@ -566,6 +574,24 @@ TEST_F(LayerSettings, AppliesTheSuppressionFile) {
   EXPECT_THAT(idsOf(runApplication(withMistake())), ElementsAre("Q104"));
 }
 
+// Applications can exit while the layer checks a pipeline. The reports are complete then.
+TEST_F(LayerSettings, FinishesReportsOfAnApplicationThatExits) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  // The child process runs the test, too, with a folder of its own.
+  constexpr const char* kOutput = "QUINTET_LAYER_TEST_OUTPUT";
+  ::setenv(kOutput, file("link.sarif").c_str(), 0);
+  set(std::string("output=") + std::getenv(kOutput));
+  EXPECT_EXIT(
+      {
+        Application app = withMistake();
+        app.exit = Exit::withoutDestroying;
+        runApplication(app);
+      },
+      testing::ExitedWithCode(0), "");
+  ::unsetenv(kOutput);
+  EXPECT_THAT(textOf("link.sarif"), AllOf(HasSubstr("\"executionSuccessful\":true"), HasSubstr("Q104")));
+}
+
 // Above and below the validation layers: neither layer disturbs the other.
 TEST(Layer, WorksWithTheValidationLayers) {
   for (const std::vector<std::string>& layers :
@@ -639,6 +665,28 @@ TEST(LayerCost, DISABLED_PrintsTimes) {
   std::cout << "medians of " << kPairs << " pairs: pipeline creation " << medianOf(creation) * 100.0
             << " % CPU time, trace " << medianOf(trace) * 1e6 << " us CPU time, " << medianOf(trace) / shortest * 100.0
             << " % of the shortest trace\n";
+}
+
+// The same for pipelines with many hit groups, each with a stage of its own. The application ends after the creation.
+TEST(LayerCost, DISABLED_PrintsTimesOfManyHitGroups) {
+  for (const std::uint32_t count : {250u, 1000u, 4000u}) {
+    std::vector<double> cpu[2], wall[2], relative;
+    for (int i = 0; i < 10; ++i) {
+      for (const int k : {i % 2, 1 - i % 2}) {
+        Application app = withLayer(k ? std::vector<std::string>{kLayer} : std::vector<std::string>{});
+        app.hitCopies = count;
+        app.submissions = 0;
+        const RunResult run = runApplication(app);
+        ASSERT_EQ(run.error, "");
+        cpu[k].push_back(run.creationCpuSeconds);
+        wall[k].push_back(run.creationSeconds);
+      }
+      relative.push_back(cpu[1].back() / cpu[0].back() - 1.0);
+    }
+    std::cout << count << " hit groups: creation CPU " << medianOf(cpu[0]) << " s without, " << medianOf(cpu[1])
+              << " s with the layer (" << medianOf(relative) * 100.0 << " %), wall clock " << medianOf(wall[0]) << ", "
+              << medianOf(wall[1]) << " s" << std::endl;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -80,9 +81,21 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
   };
   // In raw modules it can be unknown whether a trace reaches a stage.
   const auto isKnown = [&](const Edge& edge) { return edge.exact || graph.usesLibrary; };
-  for (const TraceSite& site : graph.traces)
-    for (const Edge& edge : site.edges)
-      if (isKnown(edge)) linkIncoming({site.stage, site.trace->payload}, edge.stage, Storage::IncomingRayPayloadKHR);
+  // All shaders that a trace runs receive the same payload: a second trace with the same targets adds only its own.
+  std::vector<std::optional<Shared>> linked(graph.targets.size());
+  for (const TraceSite& site : graph.traces) {
+    const Shared sent{site.stage, site.trace->payload};
+    if (sent.second == 0) continue;
+    if (linked[site.targets]) {
+      link(*linked[site.targets], sent);
+      continue;
+    }
+    for (const Edge& edge : site.edges) {
+      if (!isKnown(edge)) continue;
+      linkIncoming(sent, edge.stage, Storage::IncomingRayPayloadKHR);
+      if (graph.facts(edge).incoming(Storage::IncomingRayPayloadKHR)) linked[site.targets] = sent;
+    }
+  }
   for (const CallSite& site : graph.calls)
     for (const Edge& edge : site.edges)
       if (isKnown(edge)) linkIncoming({site.stage, site.call->data}, edge.stage, Storage::IncomingCallableDataKHR);
@@ -100,6 +113,11 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
           linkIncoming({at, attribute->id}, static_cast<std::size_t>(reader - graph.stages.data()),
                        Storage::HitAttributeKHR);
     }
+  }
+  members_.resize(shared_.size());
+  for (std::size_t i = 0; i < shared_.size(); ++i) {
+    roots_.push_back(find(i));
+    members_[roots_[i]].push_back(shared_[i]);
   }
   propagate();
   parallelFor(stages_.size(), [&](std::size_t i) {
@@ -124,8 +142,8 @@ void PipelineSpaces::addBarycentrics(const PipelineGraph& graph, const program::
   }
 }
 
-std::size_t PipelineSpaces::find(std::size_t set) const {
-  while (parent_[set] != set) set = parent_[set];
+std::size_t PipelineSpaces::find(std::size_t set) {
+  while (parent_[set] != set) set = parent_[set] = parent_[parent_[set]];
   return set;
 }
 
@@ -150,7 +168,7 @@ void PipelineSpaces::propagate() {
     std::vector<SpaceLeaves> sets(shared_.size());
     for (std::size_t i = 0; i < shared_.size(); ++i) {
       const SpaceLeaves own = stages_[shared_[i].first]->contents(shared_[i].second);
-      SpaceLeaves& all = sets[find(i)];
+      SpaceLeaves& all = sets[roots_[i]];
       if (all.empty()) {
         all = own;
       } else if (!own.empty()) {
@@ -162,7 +180,7 @@ void PipelineSpaces::propagate() {
     std::vector<bool> changed(stages_.size(), false);
     for (std::size_t i = 0; i < shared_.size(); ++i) {
       const auto& [stage, variable] = shared_[i];
-      const SpaceLeaves& tags = sets[find(i)];
+      const SpaceLeaves& tags = sets[roots_[i]];
       if (!stages_[stage]->add(variable, tags)) continue;
       if (round >= kMaxRounds) stages_[stage]->add(variable, SpaceLeaves(tags.size(), unknownTag()));
       changed[stage] = true;
@@ -177,10 +195,7 @@ void PipelineSpaces::propagate() {
 std::vector<PipelineSpaces::Shared> PipelineSpaces::linked(const Shared& shared) const {
   const auto found = index_.find(shared);
   if (found == index_.end()) return {shared};
-  std::vector<Shared> result;
-  for (std::size_t i = 0; i < shared_.size(); ++i)
-    if (find(i) == find(found->second)) result.push_back(shared_[i]);
-  return result;
+  return members_[roots_[found->second]];
 }
 
 bool PipelineSpaces::transforms() const {

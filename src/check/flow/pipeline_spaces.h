@@ -59,7 +59,7 @@ class PipelineSpaces {
 
   void link(const Shared& a, const Shared& b);
   void propagate();
-  std::size_t find(std::size_t set) const;
+  std::size_t find(std::size_t set);
   std::size_t setOf(const Shared& shared);
   void addBarycentrics(const PipelineGraph& graph, const program::HitShaders& shaders);
   void visit(const Open& open, std::size_t user, Search& search) const;
@@ -71,6 +71,8 @@ class PipelineSpaces {
   std::map<Shared, std::size_t> index_;  // into parent_
   std::vector<std::size_t> parent_;      // union-find of linked variables
   std::vector<Shared> shared_;
+  std::vector<std::size_t> roots_;            // of shared_, once all are linked
+  std::vector<std::vector<Shared>> members_;  // by root
 };
 
 }  // namespace quintet::check

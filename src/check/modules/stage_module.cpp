@@ -17,6 +17,21 @@ constexpr std::uint32_t swapped(std::uint32_t word) {
   return word << 24 | (word & 0xFF00u) << 8 | (word >> 8 & 0xFF00u) | word >> 24;
 }
 
+// True if the entry function does nothing. The optimizer would also remove code that has no effect.
+bool hasNoStatements(const std::vector<std::uint32_t>& words) {
+  const std::optional<spirv::Module> module = spirv::Module::read(words);
+  const spirv::Function* entry = module ? module->entry() : nullptr;
+  return entry && std::ranges::all_of(entry->blocks, [&](const spirv::Block& block) {
+           for (std::size_t k = block.first; k < block.end; ++k) {
+             using spv::Op;
+             const spirv::Instruction& i = module->instructions()[k];
+             const bool isDebug = i.op == Op::OpExtInst && module->extendedSet(i.at(0)).starts_with("NonSemantic.");
+             if (i.op != Op::OpLabel && i.op != Op::OpBranch && i.op != Op::OpReturn && !isDebug) return false;
+           }
+           return true;
+         });
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> moduleWords(const std::string& file, std::span<const std::byte> bytes) {
@@ -57,10 +72,11 @@ std::optional<ModuleSummary> summarize(const std::vector<std::uint32_t>& words, 
 ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t>& words,
                         const spirv::EntryPoint& entryPoint,
                         const std::optional<shader::SpecializationValues>& values) {
-  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false};
+  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false, false};
   constexpr int kMaxUnknown = 64;
   std::vector<std::uint32_t> plain =
       spirv::withPlainCode(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)));
+  stage.isStub = stage.kind == shader::Stage::intersection && hasNoStatements(plain);
   for (int i = 0; i < kMaxUnknown; ++i) {
     stage.problem.clear();
     try {

@@ -37,10 +37,11 @@ struct RecursionNeeds {
   std::vector<std::size_t> chain = {};  // stages along the longest chain of traces, from ray generation on
 };
 
-void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101, Q103, Q106
-void checkSharedLocations(const ProgramInput& input, Report& report);    // Q102, Q303
-void checkPayloadMembers(const CheckInput& input, Report& report);       // Q104, Q105
-void checkPayloadInputs(const CheckInput& input, Report& report);        // Q107
+class PayloadReceivers;
+void checkPayloadTypes(const CheckInput& input, const PayloadReceivers& receivers, Report& report);  // Q101, Q103, Q106
+void checkPayloadMembers(const CheckInput& input, const PayloadReceivers& receivers, Report& report);  // Q104, Q105
+void checkPayloadInputs(const CheckInput& input, const PayloadReceivers& receivers, Report& report);   // Q107
+void checkSharedLocations(const ProgramInput& input, Report& report);                                  // Q102, Q303
 void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203, Q205
 void checkCandidates(const CheckInput& input, Report& report);           // Q206, Q606
 void checkCallableData(const CheckInput& input, Report& report);         // Q304

@@ -46,8 +46,8 @@ void main() {
 }
 )"},
     {"miss.rmiss",
-     "#include \"data.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { data.names = vec4(-1.0); "
-     "}\n"},
+     "#include \"data.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\n"
+     "void main() { data = Data(vec4(-1.0), vec4(-1.0), vec3(-1.0), data.depth); }\n"},
     {"main.rgen", R"(#include <quintet/output.glsl>
 #include <quintet/generated/program.glsl>
 #include "data.glsl"

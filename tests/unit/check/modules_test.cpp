@@ -493,58 +493,18 @@ void main() { color = textureLod(textures[nonuniformEXT(gl_InstanceCustomIndexEX
   EXPECT_THAT(found(false), ElementsAre("Q704"));
 }
 
-// The pipeline with many hit groups, each with a closest-hit shader of its own that traces.
-PipelineGroups withHitGroups(std::size_t count, std::vector<ModuleStage>& modules, PipelineGroups groups) {
-  groups.tablesKnown = false;
-  groups.hitGroups.clear();
-  const ModuleStage hit = modules.back();
-  modules.pop_back();
-  for (std::size_t i = 0; i < count; ++i) {
-    modules.push_back(hit);
-    modules.back().name = "hit " + std::to_string(i);
-    program::HitGroup group;
-    group.name = std::to_string(i);
-    group.shaders[""].closestHit = modules.back().name;
-    groups.hitGroups.push_back(group);
-  }
-  return groups;
-}
-
-RawPipeline shadowPipeline() {
+// Applications compile variants of an intersection shader without its code. A shader that computes a distance and does not report it
+// is a mistake, although the optimizer removes its code, too.
+TEST(ModuleCheck, AcceptsIntersectionShadersWithoutStatements) {
   RawPipeline p = cleanPipeline();
-  p.groups.declaredRecursion = 2;
-  p.text("a.rchit") = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
-layout(location = 0) rayPayloadInEXT vec4 color;
-layout(location = 1) rayPayloadEXT vec4 shadow;
-hitAttributeEXT vec2 b;
-void main() {
-  shadow = vec4(0);
-  vec3 p = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
-  traceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 0, p, 0.01, vec3(0, 1, 0), 100.0, 1);
-  color = vec4(b, 0, 1) * shadow;
-}
-)";
-  return p;
-}
-
-// Each shader of many can be the one that a ray hits, and a mistake of one of them is found.
-TEST(ModuleCheck, FollowsManyHitGroups) {
-  const RawPipeline p = shadowPipeline();
-  std::vector<ModuleStage> modules = p.modules();
-  const PipelineGroups groups = withHitGroups(60, modules, p.groups);
-  EXPECT_THAT(checkModules(groups, modules, {}).diagnostics, IsEmpty());
-  RawPipeline wrong = shadowPipeline();
-  replace(wrong.text("a.rchit"), "rayPayloadInEXT vec4 color", "rayPayloadInEXT vec3 color");
-  replace(wrong.text("a.rchit"), "vec4(b, 0, 1) * shadow", "vec3(b, 0) * shadow.x");
-  modules[40].spirv = wrong.modules().back().spirv;
-  const std::vector<Diagnostic> found = checkModules(groups, modules, {}).diagnostics;
-  EXPECT_THAT(found, IsEmpty());  // the table need not have it
-  PipelineGroups known = groups;
-  known.tablesKnown = true;
-  const std::vector<Diagnostic> certain = checkModules(known, modules, {}).diagnostics;
-  ASSERT_THAT(certain, testing::SizeIs(1));
-  EXPECT_EQ(certain[0].id, "Q101");
-  EXPECT_THAT(certain[0].text, HasSubstr("hit 38"));
+  const std::string code = "float t = dot(gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT);\n";
+  p.stages.push_back({"a.rint", "void main() {\n" + code + "}\n", Stage::intersection});
+  p.groups.hitGroups[0].shaders[""].intersection = "a.rint";
+  p.text("a.rchit") =
+      "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() { color = vec4(gl_PrimitiveID); }\n";
+  EXPECT_THAT(p.check(), Contains(testing::StartsWith("Q206 a.rint")));
+  replace(p.text("a.rint"), code, "");
+  EXPECT_THAT(p.check(), IsEmpty());
 }
 
 TEST(ModuleCheck, LeavesOutRepeatedGroups) {
@@ -556,16 +516,6 @@ TEST(ModuleCheck, LeavesOutRepeatedGroups) {
   const PipelineGroups once = withoutRepeatedGroups(groups);
   EXPECT_THAT(once.hitGroups, testing::SizeIs(2));
   EXPECT_THAT(once.misses, testing::SizeIs(1));
-}
-
-TEST(ModuleCheckCost, DISABLED_PrintsTimesOfManyHitGroups) {
-  const RawPipeline p = shadowPipeline();
-  for (const std::size_t count : {1u, 250u, 500u, 1000u, 2000u, 4000u}) {
-    std::vector<ModuleStage> modules = p.modules();
-    const PipelineGroups groups = withHitGroups(count, modules, p.groups);
-    const double seconds = checkModules(groups, modules, {}).seconds;
-    std::cout << count << " hit groups: " << seconds << " s\n";
-  }
 }
 
 // NonSemantic.Shader.DebugInfo.100 in place of OpLine: the instructions that glslang -gVS and DXC write.

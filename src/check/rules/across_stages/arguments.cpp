@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "base/plural.h"
 #include "check/rules/rules.h"
@@ -110,15 +111,7 @@ class ArgumentRule {
     if (!graph_.groups.tablesKnown || !isShadow(trace) || !trace.miss.exact() ||
         trace.miss.values[0] >= graph_.groups.misses.size())
       return;
-    const auto reaches = [&](const TraceSite& other, const std::string& file) {
-      return std::ranges::any_of(
-          other.edges, [&](const Edge& e) { return e.role == Role::miss && graph_.stages[e.stage].file == file; });
-    };
-    const auto radianceTrace = [&](const std::string& file) {
-      return std::ranges::find_if(
-          graph_.traces, [&](const TraceSite& other) { return !isShadow(*other.trace) && reaches(other, file); });
-    };
-    const auto forRadiance = [&](const std::string& file) { return radianceTrace(file) != graph_.traces.end(); };
+    const auto forRadiance = [&](const std::string& file) { return usesOf(file).radiance != nullptr; };
     const program::MissShader& used = graph_.groups.misses[trace.miss.values[0]];
     if (!forRadiance(used.file)) return;
     for (std::size_t i = 0; i < graph_.groups.misses.size(); ++i) {
@@ -126,17 +119,34 @@ class ArgumentRule {
       if (forRadiance(file)) continue;
       const bool byRayType = graph_.groups.hitRecords == HitRecords::byRayType;
       const bool own = byRayType && trace.offset.exact() && trace.offset.values[0] == i;
-      const bool unused =
-          std::ranges::none_of(graph_.traces, [&](const TraceSite& other) { return reaches(other, file); });
+      const bool unused = !usesOf(file).used;
       if (!own && (!unused || returnsWhatIsRead(site))) continue;
       report_.add(
           "Q506", location_,
           fmt::format("this shadow ray uses miss shader '{}' (index {}) of radiance rays, but '{}' (index {}) is "
                       "not used by radiance rays",
                       used.file, trace.miss.values[0], file, i),
-          {relatedTo(graph_.location(*radianceTrace(used.file)), "radiance rays use the same miss shader")});
+          {relatedTo(graph_.location(*usesOf(used.file).radiance), "radiance rays use the same miss shader")});
       return;
     }
+  }
+
+  struct MissUses {
+    bool used = false;
+    const TraceSite* radiance = nullptr;  // the first trace other than of shadow rays
+  };
+
+  MissUses usesOf(const std::string& file) {
+    if (misses_.empty())
+      for (const TraceSite& site : graph_.traces)
+        for (const Edge& edge : site.edges) {
+          if (edge.role != Role::miss) break;  // they come first
+          MissUses& uses = misses_[graph_.stages[edge.stage].file];
+          uses.used = true;
+          if (!uses.radiance && !isShadow(*site.trace)) uses.radiance = &site;
+        }
+    const auto found = misses_.find(file);
+    return found == misses_.end() ? MissUses{} : found->second;
   }
 
   // True if the miss shader of the ray writes all that is read from the payload afterwards.
@@ -183,7 +193,8 @@ class ArgumentRule {
   const CheckInput& input_;
   const PipelineGraph& graph_;
   Report& report_;
-  SourceLocation location_;  // of the trace or call
+  SourceLocation location_;                           // of the trace or call
+  std::unordered_map<std::string, MissUses> misses_;  // by file
 };
 
 // Quintet's layout: geometry k has the records k * rays to k * rays + rays - 1.

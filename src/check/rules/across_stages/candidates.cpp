@@ -82,11 +82,9 @@ bool hasOnlyIgnore(const PipelineStage& stage) {
 
 // True if each trace that can run the closest-hit shader of the hit group can run its any-hit shader, too.
 bool alwaysTested(const PipelineGraph& graph, HitGroupRay hit) {
-  return std::ranges::all_of(graph.traces, [&](const TraceSite& site) {
+  return std::ranges::all_of(graph.targets, [&](const TraceTargets& targets) {
     const auto has = [&](Role role) {
-      return std::ranges::any_of(site.edges, [&](const Edge& e) {
-        return e.role == role && e.hit.group == hit.group && e.hit.ray == hit.ray;
-      });
+      return std::ranges::find(edgesOf(targets.edges, hit), role, &Edge::role) != edgesOf(targets.edges, hit).end();
     };
     return !has(Role::closestHit) || has(Role::anyHit);
   });
@@ -113,7 +111,9 @@ void checkCandidates(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
   for (const PipelineStage& stage : graph.stages) {
     if (stage.kind != shader::Stage::intersection || !stage.facts || program::isLibraryStage(stage.file)) continue;
-    if (input.featureDefines || !stage.facts->reports().empty() || callsFunctions(stage.facts->module())) continue;
+    if (input.featureDefines || stage.isStub || !stage.facts->reports().empty() ||
+        callsFunctions(stage.facts->module()))
+      continue;
     report.add(
         "Q206", mainLocation(graph, stage),
         fmt::format("intersection shader '{}' never reports an intersection, so no ray hits its geometry", stage.file));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "check/rules/rules.h"
@@ -57,12 +58,13 @@ class EndlessRecursion {
       if (isUnconditional(site)) sites_.push_back(&site);
     // The largest set of traces of which each leads to a stage with another one.
     for (bool changed = true; changed;) {
+      countSites();
       changed = std::erase_if(sites_, [&](const TraceSite* site) { return !next(*site); }) > 0;
     }
   }
 
   // Returns the traces of which each closes a cycle, with the stage that it runs.
-  std::vector<std::pair<const TraceSite*, const Edge*>> cycles() const {
+  std::vector<std::pair<const TraceSite*, const Edge*>> cycles() {
     std::vector<std::pair<const TraceSite*, const Edge*>> result;
     for (const TraceSite* site : sites_) {
       const Edge* edge = next(*site);
@@ -72,7 +74,7 @@ class EndlessRecursion {
   }
 
  private:
-  bool isUnconditional(const TraceSite& site) const {
+  bool isUnconditional(const TraceSite& site) {
     const shader::Stage kind = graph_.stages[site.stage].kind;
     if (kind != shader::Stage::closestHit && kind != shader::Stage::miss) return false;
     const spirv::StageFacts& facts = graph_.facts(site);
@@ -85,12 +87,18 @@ class EndlessRecursion {
     for (const std::size_t argument : {1u, 2u, 3u, 4u, 5u, 7u, 9u})
       if (dependsOnCaller(facts, position->function, call.at(argument))) return false;
     // An any-hit shader can end the recursion by ignoring hits.
-    return std::ranges::none_of(
-        site.edges, [&](const Edge& edge) { return edge.role == Role::anyHit && graph_.facts(edge).ignores(); });
+    const auto [ignores, isNew] = ignores_.try_emplace(site.targets, false);
+    if (isNew)
+      ignores->second = std::ranges::any_of(
+          site.edges, [&](const Edge& edge) { return edge.role == Role::anyHit && graph_.facts(edge).ignores(); });
+    return !ignores->second;
   }
 
-  bool hasSite(std::size_t stage) const {
-    return std::ranges::any_of(sites_, [&](const TraceSite* site) { return site->stage == stage; });
+  // Notes the stages of `sites_`, on which next() depends.
+  void countSites() {
+    hasSite_.assign(graph_.stages.size(), false);
+    for (const TraceSite* site : sites_) hasSite_[site->stage] = true;
+    next_.clear();
   }
 
   bool isUsed(std::size_t group) const { return !input_.usedGroups || input_.usedGroups->contains(group); }
@@ -101,26 +109,34 @@ class EndlessRecursion {
   }
 
   // Returns the edge to a stage with such a trace if each hit of the trace, or its miss, runs one; else null.
-  const Edge* next(const TraceSite& site) const {
+  const Edge* next(const TraceSite& site) {
+    const auto [known, isNew] = next_.try_emplace(site.targets, nullptr);
+    if (isNew) known->second = findNext(site);
+    return known->second;
+  }
+
+  const Edge* findNext(const TraceSite& site) const {
     const Edge* found = nullptr;
     bool allHits = !site.skipsClosestHit() && !canBeConvex() && !site.assumesHits;
     for (const HitGroupRay hit : site.hits) {
+      if (!allHits) break;
       if (!isUsed(hit.group)) continue;
-      const auto edge = std::ranges::find_if(site.edges, [&](const Edge& e) {
-        return e.role == Role::closestHit && e.exact && e.hit.group == hit.group && e.hit.ray == hit.ray &&
-               hasSite(e.stage);
-      });
-      allHits = allHits && edge != site.edges.end();
-      if (edge != site.edges.end()) found = &*edge;
+      const std::span<const Edge> edges = edgesOf(site.edges, hit);
+      const auto edge = std::ranges::find_if(
+          edges, [&](const Edge& e) { return e.role == Role::closestHit && e.exact && hasSite_[e.stage]; });
+      allHits = edge != edges.end();
+      if (allHits) found = &*edge;
     }
     if (allHits && found) return found;
-    for (const Edge& edge : site.edges)
-      if (edge.role == Role::miss && edge.exact && hasSite(edge.stage)) return &edge;
+    for (const Edge& edge : site.edges) {
+      if (edge.role != Role::miss) break;  // they come first
+      if (edge.exact && hasSite_[edge.stage]) return &edge;
+    }
     return nullptr;
   }
 
   bool reaches(std::size_t from, std::size_t to) const {
-    std::vector<bool> seen(graph_.stages.size(), false);
+    std::vector<bool> seen(graph_.stages.size(), false), followed(graph_.targets.size(), false);
     std::vector<std::size_t> open{from};
     while (!open.empty()) {
       const std::size_t stage = open.back();
@@ -128,17 +144,24 @@ class EndlessRecursion {
       if (stage == to) return true;
       if (seen[stage]) continue;
       seen[stage] = true;
-      for (const TraceSite* site : sites_)
-        if (site->stage == stage)
-          for (const Edge& edge : site->edges)
-            if (edge.role == Role::closestHit || edge.role == Role::miss) open.push_back(edge.stage);
+      const auto sites = std::ranges::equal_range(sites_, stage, {}, &TraceSite::stage);
+      for (const TraceSite* site : sites) {
+        if (followed[site->targets]) continue;
+        followed[site->targets] = true;
+        for (const Edge& edge : site->edges)
+          if ((edge.role == Role::closestHit || edge.role == Role::miss) && !seen[edge.stage])
+            open.push_back(edge.stage);
+      }
     }
     return false;
   }
 
   const CheckInput& input_;
   const PipelineGraph& graph_;
-  std::vector<const TraceSite*> sites_;
+  std::vector<const TraceSite*> sites_;      // in the order of their stages
+  std::vector<bool> hasSite_;                // by stage
+  std::map<std::size_t, const Edge*> next_;  // by targets
+  std::map<std::size_t, bool> ignores_;      // by targets: an any-hit shader ignores hits
 };
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
@@ -188,7 +190,14 @@ Id withoutOffset(const spirv::Module& module, Id t) {
 
 class HitPositions {
  public:
-  HitPositions(const CheckInput& input, Report& report) : graph_(input.graph), report_(report) {}
+  HitPositions(const CheckInput& input, Report& report) : graph_(input.graph), report_(report) {
+    tracesOf_.resize(graph_.targets.size());
+    for (const TraceSite& site : graph_.traces) tracesOf_[site.targets].push_back(&site);
+    tracesTo_.resize(graph_.stages.size());
+    for (std::size_t targets = 0; targets < graph_.targets.size(); ++targets)
+      for (const Edge& edge : graph_.targets[targets].edges)
+        if (edge.role == Role::closestHit) tracesTo_[edge.stage].insert(targets);
+  }
 
   void check() {
     for (std::size_t stage = 0; stage < graph_.stages.size(); ++stage) {
@@ -210,23 +219,31 @@ class HitPositions {
     if (!spirv::loadsBuiltIn(module, position.origin, spv::BuiltIn::WorldRayOriginKHR)) return;
     const Id direction = normalizedOf(module, position.direction);
     if (direction == 0 || !spirv::loadsBuiltIn(module, direction, spv::BuiltIn::WorldRayDirectionKHR)) return;
-    for (const TraceSite& site : graph_.traces) {
-      const bool reaches = std::ranges::any_of(
-          site.edges, [&](const Edge& edge) { return edge.role == Role::closestHit && edge.stage == stage; });
-      if (!reaches || !hasOtherLength(site)) continue;
-      return add(stage, position,
-                 "the hit position is computed with the normalized direction, but the ray was traced with a direction "
-                 "that is not normalized",
-                 site);
-    }
+    const TraceSite* first = nullptr;
+    for (const std::size_t targets : tracesTo_[stage])
+      if (const TraceSite* site = firstWithOtherLength(targets); site && (!first || site < first)) first = site;
+    if (!first) return;
+    add(stage, position,
+        "the hit position is computed with the normalized direction, but the ray was traced with a direction that is "
+        "not "
+        "normalized",
+        *first);
+  }
+
+  const TraceSite* firstWithOtherLength(std::size_t targets) {
+    const auto [known, isNew] = otherLength_.try_emplace(targets, nullptr);
+    if (!isNew) return known->second;
+    const auto& traces = tracesOf_[targets];
+    const auto found = std::ranges::find_if(traces, [&](const TraceSite* site) { return hasOtherLength(*site); });
+    return known->second = found == traces.end() ? nullptr : *found;
   }
 
   // The shader that traced the ray gets t in the payload.
   void checkTraced(std::size_t stage, const Position& position) {
     const spirv::Module& module = graph_.stages[stage].facts->module();
     const auto sum = module.definitionIndex(position.sum->result);
-    for (const TraceSite& site : graph_.traces) {
-      if (site.stage != stage || !spirv::canRunAfter(module, sum, site.trace->instruction)) continue;
+    for (const TraceSite& site : graph_.tracesOf(stage)) {
+      if (!spirv::canRunAfter(module, sum, site.trace->instruction)) continue;
       const spirv::Instruction& trace = module.instructions()[site.trace->instruction];
       if (!spirv::sameValue(module, position.origin, trace.at(6))) continue;
       const std::string text = differenceOf(module, trace, position.direction);
@@ -266,13 +283,19 @@ class HitPositions {
   }
 
   // True if the value is a member of the payload to which all closest-hit shaders of the trace store gl_HitTEXT as it is.
-  bool isPlainT(const TraceSite& site, Id t) const {
+  bool isPlainT(const TraceSite& site, Id t) {
     const spirv::StageFacts& facts = graph_.facts(site);
     const auto read = std::ranges::find_if(facts.accesses(), [&](const spirv::AccessFacts& access) {
       return access.reads && access.variable == site.trace->payload && access.value == t &&
              access.leaves.count() == 1 && access.leaves.exact;
     });
     if (read == facts.accesses().end()) return false;
+    const auto [known, isNew] = storesPlainT_.try_emplace({site.targets, read->leaves.first}, false);
+    if (isNew) known->second = storesPlainT(site, read->leaves.first);
+    return known->second;
+  }
+
+  bool storesPlainT(const TraceSite& site, std::uint32_t leaf) const {
     bool stored = false;
     for (const Edge& edge : site.edges) {
       if (edge.role != Role::closestHit) continue;
@@ -280,8 +303,8 @@ class HitPositions {
       const spirv::SharedVariable* payload = hit.incoming(spv::StorageClass::IncomingRayPayloadKHR);
       if (!payload) continue;
       for (const spirv::AccessFacts& write : hit.accesses()) {
-        if (!write.writes || write.variable != payload->id || !write.leaves.covers(read->leaves.first)) continue;
-        const spirv::ValuePart value = spirv::originOf(hit.module(), hit.storedValue(write, read->leaves.first));
+        if (!write.writes || write.variable != payload->id || !write.leaves.covers(leaf)) continue;
+        const spirv::ValuePart value = spirv::originOf(hit.module(), hit.storedValue(write, leaf));
         if (value.id == 0 || !spirv::loadsBuiltIn(hit.module(), value.id, spv::BuiltIn::RayTmaxKHR)) return false;
         stored = true;
       }
@@ -300,6 +323,10 @@ class HitPositions {
 
   const PipelineGraph& graph_;
   Report& report_;
+  std::vector<std::vector<const TraceSite*>> tracesOf_;                 // by targets, in their order
+  std::vector<std::set<std::size_t>> tracesTo_;                         // targets by closest-hit stage
+  std::map<std::size_t, const TraceSite*> otherLength_;                 // by targets
+  std::map<std::pair<std::size_t, std::uint32_t>, bool> storesPlainT_;  // by targets and leaf
 };
 
 }  // namespace

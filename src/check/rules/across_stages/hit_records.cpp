@@ -3,7 +3,7 @@
 // hit group. Q610: any-hit shaders that the ray flags or the geometry exclude.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <vector>
 
 #include "base/plural.h"
 #include "check/rules/across_stages/shared_data.h"
@@ -21,21 +21,28 @@ class RecordRule {
 
   void check() {
     if (groups_.hitRecords != HitRecords::byRecord) return;
-    for (const TraceSite& site : graph_.traces) checkTrace(site);
+    std::vector<bool> correct(graph_.targets.size(), false);  // equal traces use the same records
+    for (const TraceSite& site : graph_.traces)
+      if (!correct[site.targets]) correct[site.targets] = checkTrace(site);
     if (!groups_.groupsKnown || !graph_.error.empty()) return;
+    findAnyHits();
     for (std::size_t group = 0; group < groups_.hitGroups.size(); ++group) checkAnyHit({group, 0});
   }
 
  private:
-  void checkTrace(const TraceSite& site) {
+  // Returns false if a record is reported.
+  bool checkTrace(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
-    if (!groups_.instances || !groups_.tablesKnown || !trace.offset.certain() || !trace.stride.certain()) return;
+    bool correct = true;
+    if (!groups_.instances || !groups_.tablesKnown || !trace.offset.certain() || !trace.stride.certain()) return true;
     for (const std::uint32_t offset : trace.offset.values)
       for (const std::uint32_t stride : trace.stride.values)
-        if (offset <= kLargestOffset && stride <= kLargestOffset) checkRecords(site, offset, stride);  // Q503
+        if (offset <= kLargestOffset && stride <= kLargestOffset)  // Q503
+          correct = checkRecords(site, offset, stride) && correct;
+    return correct;
   }
 
-  void checkRecords(const TraceSite& site, std::uint32_t offset, std::uint32_t stride) {
+  bool checkRecords(const TraceSite& site, std::uint32_t offset, std::uint32_t stride) {
     const spirv::TraceFacts& trace = *site.trace;
     for (const InstanceRecords& instance : *groups_.instances) {
       if (!trace.mask.mayHave(instance.facts.mask & kMaskOfInstance)) continue;
@@ -43,9 +50,10 @@ class RecordRule {
         const program::GeometryFacts& geometry = groups_.geometries[instance.facts.firstGeometry + k];
         if (trace.flags.mustHave(geometry.procedural() ? kFlagSkipAabbs : kFlagSkipTriangles)) continue;
         const std::size_t record = std::size_t{instance.recordOffset} + std::size_t{k} * stride + offset;
-        if (!checkRecord(site, instance, k, record)) return;
+        if (!checkRecord(site, instance, k, record)) return false;
       }
     }
+    return true;
   }
 
   // Returns false if the record is reported.
@@ -69,18 +77,27 @@ class RecordRule {
     return false;
   }
 
+  // By hit group: whether traces can hit it, and whether one of them can run its any-hit shader.
+  void findAnyHits() {
+    hasTrace_.assign(groups_.hitGroups.size(), false);
+    runs_ = hasTrace_;
+    std::vector<bool> known(graph_.targets.size(), false);
+    for (const TraceSite& site : graph_.traces) {
+      if (known[site.targets]) continue;
+      known[site.targets] = true;
+      const spirv::ArgumentValues& flags = site.trace->flags;
+      const bool runs = !flags.mustHave(kFlagOpaque) && !flags.mustHave(kFlagCullNoOpaque);
+      for (const HitGroupRay hit : site.hits) {
+        hasTrace_[hit.group] = true;
+        if (runs) runs_[hit.group] = true;
+      }
+    }
+  }
+
   // Q610
   void checkAnyHit(HitGroupRay hit) {
     const PipelineStage* stage = graph_.stage(graph_.shaders(hit).anyHit);
-    if (!stage) return;
-    bool hasTrace = false;
-    for (const TraceSite& site : graph_.traces) {
-      const auto is = [&](HitGroupRay other) { return other.group == hit.group; };
-      if (std::ranges::none_of(site.hits, is)) continue;
-      hasTrace = true;
-      if (!site.trace->flags.mustHave(kFlagOpaque) && !site.trace->flags.mustHave(kFlagCullNoOpaque)) return;
-    }
-    if (!hasTrace) return;
+    if (!stage || !hasTrace_[hit.group] || runs_[hit.group]) return;
     report_.addOncePerLine(
         "Q610", mainLocation(graph_, *stage),
         fmt::format("any-hit shader '{}' of {} never runs: all traces that can hit it have gl_RayFlagsOpaqueEXT or "
@@ -91,6 +108,7 @@ class RecordRule {
   const PipelineGraph& graph_;
   const PipelineGroups& groups_;
   Report& report_;
+  std::vector<bool> hasTrace_, runs_;  // by hit group
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
@@ -74,7 +76,7 @@ class MissDistances {
   }
 
   void checkLeaf(const TraceSite& site, std::uint32_t leaf) {
-    const std::vector<Write> misses = writes(site, leaf, Role::miss);
+    const std::vector<Write>& misses = writes(site, leaf, Role::miss);
     if (misses.empty() || writes(site, leaf, Role::closestHit).empty()) return;
     const Tests tests = testsOf(site, leaf);
     std::string text;
@@ -98,7 +100,13 @@ class MissDistances {
   }
 
   // The shaders of a role that store gl_RayTmaxEXT as it is; none if one of them stores something else.
-  std::vector<Write> writes(const TraceSite& site, std::uint32_t leaf, Role role) const {
+  const std::vector<Write>& writes(const TraceSite& site, std::uint32_t leaf, Role role) {
+    const auto [found, isNew] = writes_.try_emplace({site.targets, leaf, role});
+    if (isNew) found->second = findWrites(site, leaf, role);
+    return found->second;
+  }
+
+  std::vector<Write> findWrites(const TraceSite& site, std::uint32_t leaf, Role role) const {
     std::vector<Write> result;
     for (const Edge& edge : site.edges) {
       if (edge.role != role) continue;
@@ -162,6 +170,7 @@ class MissDistances {
 
   const PipelineGraph& graph_;
   Report& report_;
+  std::map<std::tuple<std::size_t, std::uint32_t, Role>, std::vector<Write>> writes_;  // by targets, leaf and role
 };
 
 }  // namespace

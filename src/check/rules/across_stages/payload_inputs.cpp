@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "check/rules/across_stages/payload_receivers.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "spirv/value_flow.h"
@@ -18,14 +19,8 @@ using spv::StorageClass;
 
 class InputRule {
  public:
-  InputRule(const PipelineGraph& graph, Report& report) : graph_(graph), report_(report) {
-    for (const TraceSite& site : graph.traces) {
-      const spirv::StageFacts& tracer = graph.facts(site);
-      const spirv::SharedVariable* sent = tracer.variable(site.trace->payload);
-      sameTypes_.push_back(sent ? sameTypes(graph, site.edges, tracer, *sent, StorageClass::IncomingRayPayloadKHR)
-                                : std::vector<bool>(site.edges.size(), false));
-    }
-  }
+  InputRule(const PipelineGraph& graph, const PayloadReceivers& receivers, Report& report)
+      : graph_(graph), receivers_(receivers), report_(report) {}
 
   void check() {
     for (const PipelineStage& stage : graph_.stages) {
@@ -90,44 +85,48 @@ class InputRule {
   bool isSet(std::size_t stage, std::uint32_t leaf, std::set<std::size_t>& seen,
              std::vector<const TraceSite*>& unset) const {
     if (!seen.insert(stage).second) return false;
-    for (std::size_t i = 0; i < graph_.traces.size(); ++i) {
-      const TraceSite& site = graph_.traces[i];
-      for (std::size_t e = 0; e < site.edges.size(); ++e) {
-        const Edge& edge = site.edges[e];
-        if (edge.stage != stage || edge.role == Role::intersection) continue;
-        if (!sameTypes_[i][e] || setsBefore(i, leaf)) return true;
-        const spirv::StageFacts& tracer = graph_.facts(site);
-        const spirv::SharedVariable* sent = tracer.variable(site.trace->payload);
-        if (sent->storage == StorageClass::IncomingRayPayloadKHR) {
-          if (isSet(site.stage, leaf, seen, unset)) return true;
-        } else if (isReadUnwritten(i, leaf)) {
-          return true;  // Q104 reports it
-        } else {
-          unset.push_back(&site);
-        }
+    for (const TraceSite* site : receivers_.tracesTo(stage)) {
+      if (!sends(*site, stage) || setsBefore(*site, leaf)) return true;
+      const spirv::StageFacts& tracer = graph_.facts(*site);
+      const spirv::SharedVariable* sent = tracer.variable(site->trace->payload);
+      if (sent->storage == StorageClass::IncomingRayPayloadKHR) {
+        if (isSet(site->stage, leaf, seen, unset)) return true;
+      } else if (isReadUnwritten(*site, leaf)) {
+        return true;  // Q104 reports it
+      } else {
+        unset.push_back(site);
       }
     }
     return false;
   }
 
+  // True if the trace sends the type that the stage receives.
+  bool sends(const TraceSite& site, std::size_t stage) const {
+    return graph_.facts(site).variable(site.trace->payload) && receivers_.sameTypes(site)[receivers_.classOf(stage)];
+  }
+
   // True if the stage reads the leaf after the trace, which can end without writing it.
-  bool isReadUnwritten(std::size_t index, std::uint32_t leaf) const {
-    const TraceSite& site = graph_.traces[index];
+  bool isReadUnwritten(const TraceSite& site, std::uint32_t leaf) const {
     if (graph_.facts(site).unguardedReads(site.trace->instruction, site.trace->payload, leaf).empty()) return false;
-    const auto leaves = [&](const Edge& edge) {
-      if (edge.role != Role::miss && edge.role != Role::closestHit) return false;
-      const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
-      return !received || !graph_.facts(edge).writesAlways(received->id, leaf);
+    const auto leaves = [&](const Edge* edge) {
+      if (edge->role != Role::miss && edge->role != Role::closestHit) return false;
+      const PayloadReceiver& receiver = receivers_.of(edge->stage);
+      return leaf >= receiver.writesAlways.size() || !receiver.writesAlways[leaf];
     };
     const auto unshaded = [&](HitGroupRay hit) {
       return site.skipsClosestHit() || graph_.shaders(hit).closestHit.empty();
     };
-    return std::ranges::any_of(site.edges, leaves) || std::ranges::any_of(site.hits, unshaded);
+    return std::ranges::any_of(receivers_.edges(site), leaves) || std::ranges::any_of(receivers_.hits(site), unshaded);
   }
 
   // True if the tracing stage, or a shader that it runs before, sets the leaf without reading it first.
-  bool setsBefore(std::size_t index, std::uint32_t leaf) const {
-    const TraceSite& site = graph_.traces[index];
+  bool setsBefore(const TraceSite& site, std::uint32_t leaf) const {
+    const auto [known, isNew] = setsBefore_.try_emplace({&site, leaf}, false);
+    if (isNew) known->second = findSetsBefore(site, leaf);
+    return known->second;
+  }
+
+  bool findSetsBefore(const TraceSite& site, std::uint32_t leaf) const {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const spirv::Id sent = site.trace->payload;
     const bool own = tracer.variable(sent)->storage == StorageClass::RayPayloadKHR;
@@ -135,17 +134,15 @@ class InputRule {
       return a.writes && a.variable == sent && a.leaves.covers(leaf);
     };
     if (std::ranges::any_of(tracer.accesses(), writes) && (own || !tracer.readsBeforeWriting(sent, leaf))) return true;
-    for (std::size_t i = 0; i < graph_.traces.size(); ++i) {
-      const TraceSite& other = graph_.traces[i];
-      if (other.stage != site.stage || other.trace->payload != sent) continue;
+    for (const TraceSite& other : graph_.tracesOf(site.stage)) {
+      if (other.trace->payload != sent) continue;
       const bool before = spirv::canRunAfter(tracer.module(), site.trace->instruction, other.trace->instruction);
-      for (std::size_t e = 0; e < other.edges.size(); ++e) {
-        const Edge& edge = other.edges[e];
-        if (edge.role == Role::intersection || (!before && edge.role != Role::anyHit)) continue;
-        const spirv::StageFacts& facts = graph_.facts(edge);
-        const spirv::SharedVariable* received = facts.incoming(StorageClass::IncomingRayPayloadKHR);
-        if (!received) continue;
-        if (!sameTypes_[i][e] || (facts.writes(received->id, leaf) && !facts.readsBeforeWriting(received->id, leaf)))
+      for (const Edge* edge : receivers_.edges(other)) {
+        if (edge->role == Role::intersection || (!before && edge->role != Role::anyHit)) continue;
+        const PayloadReceiver& receiver = receivers_.of(edge->stage);
+        if (!receiver.payload) continue;
+        if (!sends(other, edge->stage) ||
+            (leaf < receiver.writes.size() && receiver.writes[leaf] && !receiver.readsIn[leaf]))
           return true;
       }
     }
@@ -153,12 +150,15 @@ class InputRule {
   }
 
   const PipelineGraph& graph_;
+  const PayloadReceivers& receivers_;
   Report& report_;
-  std::vector<std::vector<bool>> sameTypes_;  // by trace and edge
+  mutable std::map<std::pair<const TraceSite*, std::uint32_t>, bool> setsBefore_;  // cache
 };
 
 }  // namespace
 
-void checkPayloadInputs(const CheckInput& input, Report& report) { InputRule(input.graph, report).check(); }
+void checkPayloadInputs(const CheckInput& input, const PayloadReceivers& receivers, Report& report) {
+  InputRule(input.graph, receivers, report).check();
+}
 
 }  // namespace quintet::check

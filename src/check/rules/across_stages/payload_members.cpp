@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "check/rules/across_stages/payload_receivers.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/across_stages/unwritten_paths.h"
 #include "check/rules/rules.h"
@@ -21,7 +22,8 @@ constexpr const char* kReadAfter = " is read after this trace";
 
 class MemberRule {
  public:
-  MemberRule(const CheckInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {}
+  MemberRule(const CheckInput& input, const PayloadReceivers& receivers, Report& report)
+      : input_(input), graph_(input.graph), receivers_(receivers), report_(report) {}
 
   void check(const TraceSite& site) {
     const spirv::StageFacts& tracer = graph_.facts(site);
@@ -30,7 +32,7 @@ class MemberRule {
     site_ = &site;
     tracer_ = &tracer;
     payload_ = payload;
-    sameType_ = sameTypes(graph_, site.edges, tracer, *payload, StorageClass::IncomingRayPayloadKHR);
+    sameType_ = &receivers_.sameTypes(site);
     LeafList read;
     std::vector<LeafGroup> unwritten, overwritten, stale;
     for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload->id).count(); ++leaf) {
@@ -53,13 +55,8 @@ class MemberRule {
  private:
   // Q103 reports these stages: they do not access the payload at all.
   bool hasWrongQualifier(const TraceSite& site) const {
-    return std::ranges::any_of(site.edges, [&](const Edge& edge) {
-      const spirv::StageFacts& facts = graph_.facts(edge);
-      return edge.role != Role::intersection && !facts.incoming(StorageClass::IncomingRayPayloadKHR) &&
-             std::ranges::any_of(facts.variables(), [&](const auto& v) {
-               return v.storage == StorageClass::RayPayloadKHR && v.used &&
-                      std::ranges::none_of(facts.traces(), [&](const auto& t) { return t.payload == v.id; });
-             });
+    return std::ranges::any_of(receivers_.edges(site), [&](const Edge* edge) {
+      return edge->role != Role::intersection && receivers_.of(edge->stage).wrongQualifier;
     });
   }
 
@@ -69,13 +66,10 @@ class MemberRule {
   bool writtenBefore(std::uint32_t leaf) const {
     if (tracer_->writtenBefore(payload_->id, leaf, instruction())) return true;
     if (payload_->storage != StorageClass::IncomingRayPayloadKHR) return false;
-    return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
-      const bool reaches = std::ranges::any_of(
-          other.edges, [&](const Edge& e) { return e.stage == site_->stage && e.role != Role::intersection; });
-      const auto& accesses = graph_.facts(other).accesses();
-      return reaches && std::ranges::any_of(accesses, [&](const auto& a) {
-               return a.writes && a.variable == other.trace->payload && a.leaves.covers(leaf);
-             });
+    return receivers_.anyTraceTo(site_->stage, [&](const TraceSite& other) {
+      return std::ranges::any_of(graph_.facts(other).accesses(), [&](const auto& a) {
+        return a.writes && a.variable == other.trace->payload && a.leaves.covers(leaf);
+      });
     });
   }
 
@@ -84,45 +78,46 @@ class MemberRule {
     const spirv::SharedVariable* payload = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
     return hasSameType(edge) ? payload : nullptr;
   }
-  bool hasSameType(const Edge& edge) const { return sameType_[static_cast<std::size_t>(&edge - site_->edges.data())]; }
+  bool hasSameType(const Edge& edge) const { return (*sameType_)[receivers_.classOf(edge.stage)]; }
 
   bool writes(const Edge& edge, std::uint32_t leaf, bool always) const {
     if (!hasSameType(edge)) return true;  // Q101
-    const spirv::StageFacts& facts = graph_.facts(edge);
-    const spirv::SharedVariable* payload = received(edge);
+    const PayloadReceiver& receiver = receivers_.of(edge.stage);
+    if (!receiver.payload || leaf >= receiver.writes.size()) return false;
     // Which path runs can depend on a specialization constant with which the other stages agree.
-    const bool each = always && !facts.hasUnknownConstants();
-    return payload && (each ? facts.writesAlways(payload->id, leaf) : facts.writes(payload->id, leaf));
+    const bool each = always && !receiver.facts->hasUnknownConstants();
+    return each ? receiver.writesAlways[leaf] : receiver.writes[leaf];
   }
 
   bool readsInput(const Edge& edge, std::uint32_t leaf) const {
-    const spirv::SharedVariable* payload = received(edge);
-    return payload && graph_.facts(edge).readsBeforeWriting(payload->id, leaf);
+    const PayloadReceiver& receiver = receivers_.of(edge.stage);
+    return hasSameType(edge) && leaf < receiver.readsIn.size() && receiver.readsIn[leaf];
   }
 
   bool anyHitWrites(HitGroupRay hit, std::uint32_t leaf) const {
-    return std::ranges::any_of(site_->edges, [&](const Edge& edge) {
-      return edge.role == Role::anyHit && edge.hit.group == hit.group && edge.hit.ray == hit.ray &&
-             writes(edge, leaf, false);
+    return std::ranges::any_of(edgesOf(site_->edges, hit), [&](const Edge& edge) {
+      return edge.role == Role::anyHit && writes(edge, leaf, false);
     });
   }
 
   // True if a shader of the role, or an any-hit shader before it, can write the leaf.
   bool canWrite(std::uint32_t leaf, Role role) const {
-    return std::ranges::any_of(site_->edges, [&](const Edge& edge) {
-      const bool counts = edge.role == role || (role == Role::closestHit && edge.role == Role::anyHit);
-      return counts && writes(edge, leaf, false);
+    return std::ranges::any_of(receivers_.edges(*site_), [&](const Edge* edge) {
+      const bool counts = edge->role == role || (role == Role::closestHit && edge->role == Role::anyHit);
+      return counts && writes(*edge, leaf, false);
     });
   }
 
   // Calls `use` for each way in which the trace can end: with whether it is a miss, whether the leaf is written then
   // (0 never, 1 on some path, 2 always), and the shader or null. Stops if `use` returns false.
   // If it is unknown which hit group or miss shader runs, and one of them can write the leaf, these ends are skipped.
-  template <class Use>
-  void forEachEnd(std::uint32_t leaf, const Use& use) const {
+  // `edges` and `hits`: those of the trace, or the first of equal ones.
+  template <class Edges, class Hits, class Use>
+  void forEachEnd(std::uint32_t leaf, const Edges& edges, const Hits& hits, const Use& use) const {
     const bool skipHits = site_->assumesHits && canWrite(leaf, Role::closestHit);
     const bool skipMisses = site_->assumesMisses && canWrite(leaf, Role::miss);
-    for (const Edge& edge : site_->edges) {
+    for (const auto& entry : edges) {
+      const Edge& edge = edgeOf(entry);
       if (edge.role != Role::miss && edge.role != Role::closestHit) continue;
       if (edge.role == Role::miss ? skipMisses : skipHits) continue;
       const bool byAnyHit = edge.role == Role::closestHit && anyHitWrites(edge.hit, leaf);
@@ -130,18 +125,36 @@ class MemberRule {
       if (!use(edge.role == Role::miss, written, &edge, edge.hit)) return;
     }
     if (skipHits) return;
-    for (const HitGroupRay hit : site_->hits) {
+    for (const HitGroupRay hit : hits) {
       const bool without = site_->skipsClosestHit() || graph_.shaders(hit).closestHit.empty();
       if (without && !use(false, anyHitWrites(hit, leaf) ? 2 : 0, nullptr, hit)) return;
     }
+  }
+  static const Edge& edgeOf(const Edge& edge) { return edge; }
+  static const Edge& edgeOf(const Edge* edge) { return *edge; }
+
+  // The same for the first of equal ends.
+  template <class Use>
+  void forEachKindOfEnd(std::uint32_t leaf, const Use& use) const {
+    forEachEnd(leaf, receivers_.edges(*site_), receivers_.hits(*site_), use);
+  }
+
+  bool hasNonWriter(std::uint32_t leaf) const {
+    bool found = graph_.groups.hitGroups.empty() && graph_.groups.groupsKnown;
+    forEachKindOfEnd(leaf, [&](bool, int written, const Edge*, HitGroupRay) {
+      found = found || written != 2;
+      return !found;
+    });
+    return found;
   }
 
   // Descriptions of shaders and hits that can end the trace without writing the leaf, up to 3.
   std::vector<std::string> nonWriters(std::uint32_t leaf) const {
     std::vector<std::string> result;
+    if (!hasNonWriter(leaf)) return result;
     constexpr std::size_t kMaxNamed = 3;
     bool skipped = false;
-    forEachEnd(leaf, [&](bool, int written, const Edge* edge, HitGroupRay hit) {
+    forEachEnd(leaf, site_->edges, site_->hits, [&](bool, int written, const Edge* edge, HitGroupRay hit) {
       if (written == 2) return true;
       if (edge)
         result.push_back(fmt::format("the {}{}", graph_.describe(*edge), written == 1 ? ", on some path," : ""));
@@ -162,13 +175,16 @@ class MemberRule {
   // Reports closest-hit shaders that write nothing that is read afterwards and have no other effect.
   void reportHitsWithoutResult(const LeafList& read) {
     if (read.empty() || input_.featureDefines) return;
-    for (const Edge& edge : site_->edges) {
+    const auto hasNoResult = [&](const Edge* edge) {
       const auto written = [&](std::uint32_t leaf) {
-        return writes(edge, leaf, false) || anyHitWrites(edge.hit, leaf);
+        return writes(*edge, leaf, false) || anyHitWrites(edge->hit, leaf);
       };
-      if (edge.role != Role::closestHit || !edge.exact || std::ranges::any_of(read, written) ||
-          hasEffects(graph_.facts(edge)))
-        continue;
+      return edge->role == Role::closestHit && edge->exact && std::ranges::none_of(read, written) &&
+             !receivers_.of(edge->stage).hasEffects;
+    };
+    if (std::ranges::none_of(receivers_.edges(*site_), hasNoResult)) return;
+    for (const Edge& edge : site_->edges) {
+      if (!hasNoResult(&edge)) continue;
       report_.add("Q104", graph_.location(*site_),
                   fmt::format("the payload is read after this trace, but the {} writes none of the members that are "
                               "read, so its hits have no effect",
@@ -190,7 +206,10 @@ class MemberRule {
 
   // The same for reads behind conditions on the payload that hold although a shader does not write the leaf.
   void findUnwrittenBehindConditions(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
+    if (tracer_->readsAfter(instruction(), payload_->id, leaf).empty()) return;
     for (const Edge& edge : site_->edges) {
+      const PayloadReceiver& receiver = receivers_.of(edge.stage);
+      if (leaf < receiver.writesAlways.size() && receiver.writesAlways[leaf]) continue;
       const bool ends = edge.role == Role::miss || (edge.role == Role::closestHit && !anyHitWrites(edge.hit, leaf));
       if (!ends || !edge.exact || !received(edge)) continue;
       const std::vector<std::size_t> reads = exactReads(
@@ -210,7 +229,7 @@ class MemberRule {
       const spirv::LeafRange& range = tracer_->accesses()[i].leaves;
       if (range.exact) return false;
       for (std::uint32_t leaf = range.first; leaf < range.last; ++leaf)
-        if (writtenBefore(leaf) || nonWriters(leaf).empty()) return true;
+        if (writtenBefore(leaf) || !hasNonWriter(leaf)) return true;
       return false;
     });
     return reads;
@@ -222,11 +241,11 @@ class MemberRule {
     std::vector<std::size_t> reads = tracer_->unguardedReads(instruction(), payload_->id, leaf);
     std::erase_if(reads, [&](std::size_t i) { return !tracer_->accesses()[i].leaves.exact; });
     if (reads.empty() || !hasOneKindOfWriter(leaf)) return;
-    const auto earlier = std::ranges::find_if(graph_.traces, [&](const TraceSite& other) {
-      return other.stage == site_->stage && other.trace->payload == payload_->id && isSameRay(other) &&
-             canBeStale(*other.trace, leaf);
+    const std::span<const TraceSite> traces = graph_.tracesOf(site_->stage);
+    const auto earlier = std::ranges::find_if(traces, [&](const TraceSite& other) {
+      return other.trace->payload == payload_->id && isSameRay(other) && canBeStale(*other.trace, leaf);
     });
-    if (earlier == graph_.traces.end()) return;
+    if (earlier == traces.end()) return;
     if (earlier->trace == site_->trace) {
       std::erase_if(reads, [&](std::size_t i) {
         return !spirv::canRunAfter(tracer_->module(), instruction(), tracer_->accesses()[i].instruction);
@@ -252,14 +271,14 @@ class MemberRule {
   }
 
   bool hasOneKindOfWriter(std::uint32_t leaf) const {
-    if (std::ranges::any_of(site_->edges, [&](const Edge& edge) {
-          return edge.role != Role::intersection && (!edge.exact || !hasSameType(edge) || readsInput(edge, leaf) ||
-                                                     (edge.role == Role::anyHit && writes(edge, leaf, false)));
+    if (std::ranges::any_of(receivers_.edges(*site_), [&](const Edge* edge) {
+          return edge->role != Role::intersection && (!edge->exact || !hasSameType(*edge) || readsInput(*edge, leaf) ||
+                                                      (edge->role == Role::anyHit && writes(*edge, leaf, false)));
         }))
       return false;
     int ofMiss = -1, ofHit = -1;
     bool clear = true;
-    forEachEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
+    forEachKindOfEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
       int& kind = miss ? ofMiss : ofHit;
       clear = clear && written != 1 && (kind == -1 || kind == written);
       kind = written;
@@ -294,7 +313,7 @@ class MemberRule {
     // A condition on the leaf ends the loop, unless it has the value of before the loop.
     if (ofLeaf) return excludesInitial;
     bool missWrites = false;
-    forEachEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
+    forEachKindOfEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
       missWrites = missWrites || (miss && written == 2);
       return true;
     });
@@ -367,11 +386,12 @@ class MemberRule {
     std::size_t callees = 0, writers = 0;
     for (const Edge& edge : site_->edges) {
       if (edge.role == Role::intersection) continue;
-      const spirv::SharedVariable* payload = received(edge);
+      const bool writesLeaf = writes(edge, leaf, false);
       known = known && edge.exact && hasSameType(edge) &&
-              (!payload || addConstants(graph_.facts(edge), payload->id, leaf, constants));
+              (!writesLeaf || addConstants(graph_.facts(edge), received(edge)->id, leaf, constants));
+      if (!known || constants.size() > 1) return {};
       ++callees;
-      writers += writes(edge, leaf, false) ? 1 : 0;
+      writers += writesLeaf ? 1 : 0;
     }
     if (!known || callees == 0 || constants.size() != 1) return {};
     return writers > 0;
@@ -387,7 +407,7 @@ class MemberRule {
     const auto excludes = [](const TraceSite& site) {
       return site.trace->flags.mustHave(kFlagOpaque) || site.trace->flags.mustHave(kFlagCullNoOpaque);
     };
-    return std::ranges::all_of(graph_.traces, excludes) && std::ranges::any_of(site_->hits, [&](HitGroupRay hit) {
+    return receivers_.allTraces(excludes) && std::ranges::any_of(site_->hits, [&](HitGroupRay hit) {
              const PipelineStage* anyHit = graph_.stage(graph_.shaders(hit).anyHit);
              const spirv::SharedVariable* payload =
                  anyHit && anyHit->facts ? anyHit->facts->incoming(StorageClass::IncomingRayPayloadKHR) : nullptr;
@@ -404,13 +424,12 @@ class MemberRule {
     for (const spirv::AccessFacts& a : tracer_->accesses())
       if (a.writes && a.variable == payload_->id && a.leaves.exact && a.leaves.covers(leaf))
         stores.push_back(a.instruction);
-    return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
-      return &other != site_ && other.stage == site_->stage && other.trace->payload == payload_->id &&
+    return std::ranges::any_of(graph_.tracesOf(site_->stage), [&](const TraceSite& other) {
+      return &other != site_ && other.trace->payload == payload_->id &&
              tracer_->pathsAfter(other.trace->instruction).reaches(instruction(), stores) &&
-             std::ranges::any_of(other.edges, [&](const Edge& edge) {
-               const spirv::StageFacts& facts = graph_.facts(edge);
-               const spirv::SharedVariable* payload = facts.incoming(StorageClass::IncomingRayPayloadKHR);
-               return edge.role != Role::intersection && payload && facts.writes(payload->id, leaf);
+             std::ranges::any_of(receivers_.edges(other), [&](const Edge* edge) {
+               const PayloadReceiver& receiver = receivers_.of(edge->stage);
+               return edge->role != Role::intersection && leaf < receiver.writes.size() && receiver.writes[leaf];
              });
     });
   }
@@ -444,15 +463,15 @@ class MemberRule {
   void findOverwritten(std::uint32_t leaf, const std::vector<std::size_t>& reads,
                        std::vector<LeafGroup>& groups) const {
     const Edge* writer = nullptr;
-    for (const Edge& edge : site_->edges) {
-      if (edge.role == Role::intersection || !received(edge)) continue;
-      if (readsInput(edge, leaf)) return;  // input of the inner ray
-      const bool assumed = edge.role == Role::miss ? site_->assumesMisses : site_->assumesHits;
-      if (!assumed && !writer && writes(edge, leaf, false)) writer = &edge;
+    for (const Edge* edge : receivers_.edges(*site_)) {
+      if (edge->role == Role::intersection || !received(*edge)) continue;
+      if (readsInput(*edge, leaf)) return;  // input of the inner ray
+      const bool assumed = edge->role == Role::miss ? site_->assumesMisses : site_->assumesHits;
+      if (!assumed && !writer && writes(*edge, leaf, false)) writer = edge;
     }
     // A value that a shader at the end of the trace keeps is a default, unless a condition on another member decides
     // whether it is read.
-    if (!writer || (!nonWriters(leaf).empty() && !isTestedByOtherMember(leaf))) return;
+    if (!writer || (hasNonWriter(leaf) && !isTestedByOtherMember(leaf))) return;
     const spirv::Module& module = tracer_->module();
     const std::vector<std::size_t> kills = tracer_->writers(payload_->id, leaf);
     for (const spirv::AccessFacts& a : tracer_->accesses()) {
@@ -524,17 +543,18 @@ class MemberRule {
 
   const CheckInput& input_;
   const PipelineGraph& graph_;
+  const PayloadReceivers& receivers_;
   Report& report_;
   const TraceSite* site_ = nullptr;  // the trace that is checked
   const spirv::StageFacts* tracer_ = nullptr;
   const spirv::SharedVariable* payload_ = nullptr;
-  std::vector<bool> sameType_;  // by edge of the trace
+  const std::vector<bool>* sameType_ = nullptr;  // by class of receivers
 };
 
 }  // namespace
 
-void checkPayloadMembers(const CheckInput& input, Report& report) {
-  MemberRule rule(input, report);
+void checkPayloadMembers(const CheckInput& input, const PayloadReceivers& receivers, Report& report) {
+  MemberRule rule(input, receivers, report);
   for (const TraceSite& site : input.graph.traces) rule.check(site);
 }
 

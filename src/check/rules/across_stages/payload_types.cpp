@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "check/rules/across_stages/payload_receivers.h"
 #include "check/rules/rules.h"
 #include "spirv/source_text.h"
 
@@ -19,6 +21,7 @@ using spv::StorageClass;
 struct Pair {
   std::size_t site = 0;  // in the list of sites
   const Edge* edge = nullptr;
+  std::size_t receiver = 0;  // equal for stages that the rule cannot distinguish
   const spirv::SharedVariable* sent = nullptr;
   const spirv::SharedVariable* received = nullptr;
   std::optional<std::string> difference;  // of their types; nullopt if they agree
@@ -36,28 +39,48 @@ bool missesNone(const PipelineGraph& graph, const TraceSite& site) {
 }
 bool missesNone(const PipelineGraph&, const CallSite&) { return false; }
 
-template <class Site>
-std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming) {
+// All edges of the sites.
+struct AllEdges {
+  template <class Site>
+  std::vector<const Edge*> of(const Site& site) const {
+    std::vector<const Edge*> result;
+    for (const Edge& edge : site.edges) result.push_back(&edge);
+    return result;
+  }
+  std::size_t receiver(const Edge& edge) const { return edge.stage; }
+};
+
+// The first ones of equal edges.
+struct KindsOfEdges {
+  const PayloadReceivers& receivers;
+  const std::vector<const Edge*>& of(const TraceSite& site) const { return receivers.edges(site); }
+  std::size_t receiver(const Edge& edge) const { return receivers.kindOfStage(edge.stage); }
+};
+
+template <class Site, class Edges>
+std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
+                          const Edges& edges) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const spirv::StageFacts& sender = graph.facts(sites[i]);
     const spirv::SharedVariable* sent = sender.variable(sentVariable(sites[i]));
+    const std::vector<const Edge*>& ofSite = edges.of(sites[i]);
     const auto mayReceiveNothing = [&](Role role) {
-      return std::ranges::any_of(sites[i].edges, [&](const Edge& edge) {
-        return edge.role == role && !edge.exact && !graph.facts(edge).incoming(incoming);
+      return std::ranges::any_of(ofSite, [&](const Edge* edge) {
+        return edge->role == role && !edge->exact && !graph.facts(*edge).incoming(incoming);
       });
     };
     const bool silentMiss = mayReceiveNothing(Role::miss) || missesNone(graph, sites[i]);
     const bool silentCall = mayReceiveNothing(Role::callable);
-    for (const Edge& edge : sites[i].edges) {
-      if (edge.role == Role::intersection) continue;
-      const spirv::StageFacts& receiver = graph.facts(edge);
+    for (const Edge* edge : ofSite) {
+      if (edge->role == Role::intersection) continue;
+      const spirv::StageFacts& receiver = graph.facts(*edge);
       const spirv::SharedVariable* received = receiver.incoming(incoming);
       if (!sent || !received) continue;
       pairs.push_back(
-          {i, &edge, sent, received,
+          {i, edge, edges.receiver(*edge), sent, received,
            spirv::differenceOf(sender.module().types(), sent->type, receiver.module().types(), received->type),
-           edge.role == Role::miss ? silentMiss : edge.role == Role::callable && silentCall});
+           edge->role == Role::miss ? silentMiss : edge->role == Role::callable && silentCall});
     }
   }
   return pairs;
@@ -69,50 +92,62 @@ class TypeErrors {
  public:
   TypeErrors(const PipelineGraph& graph, const std::vector<Pair>& pairs) : graph_(graph) {
     for (const Pair& pair : pairs) {
-      if (pair.difference && pair.edge->exact) receiversOfExact_.insert(pair.edge->stage);
+      if (pair.difference && pair.edge->exact) receiversOfExact_.insert(pair.receiver);
       if (pair.difference) continue;
-      receivers_.insert(pair.edge->stage);
+      receivers_.insert(pair.receiver);
       senders_.insert({pair.site, pair.edge->role == Role::miss});
     }
     for (const Pair& pair : pairs) {
       if (!pair.difference || receiverAgrees(pair) || senderAgrees(pair)) continue;
-      receiversOfBoth_.insert(pair.edge->stage);
+      receiversOfBoth_.insert(pair.receiver);
       sendersOfBoth_.insert({pair.site, pair.edge->role == Role::miss});
     }
   }
 
-  // Call it once for each pair, in their order.
-  bool isError(const Pair& pair) {
+  // Whether isError() can return true for the pair or, if equal receivers have one pair, for an edge to one of them.
+  bool canBeError(const Pair& pair) const {
     if (!pair.difference) return false;
     if (pair.edge->exact) return true;
-    if (receiversOfExact_.contains(pair.edge->stage)) return false;  // that error is certain
+    if (receiversOfExact_.contains(pair.receiver)) return false;  // that error is certain
     if (!graph_.error.empty()) return false;  // the other side can be a stage that cannot be analyzed
     const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
     // A pipeline can have groups that its table does not have, and a table can have records without a shader.
     const PipelineGroups& groups = graph_.groups;
     if (groups.groupsKnown && !groups.tablesKnown) return !receiver && !sender;
-    // A hit can end without a closest-hit shader.
-    const bool isHit = pair.edge->role != Role::miss && pair.edge->role != Role::callable;
-    const bool hitMayEnd = isHit && groups.hitRecords == HitRecords::byRecord;
-    if (groups.tablesKnown) return !receiver || (!hitMayEnd && !sender);
+    if (groups.tablesKnown) return !receiver || (!hitMayEnd(pair) && !sender);
     // Any shader can be the one that is meant. It is the one that also fits to nothing, if there is one.
     if (!receiver && !sender) return true;
-    if (!receiver) return !receiversOfBoth_.contains(pair.edge->stage) && reported_.insert(pair.edge->stage).second;
-    if (sender || hitMayEnd) return false;
-    const Sender key{pair.site, pair.edge->role == Role::miss};
-    return !sendersOfBoth_.contains(key) && reportedSenders_.insert(key).second;
+    if (!receiver) return !receiversOfBoth_.contains(pair.receiver);
+    return !sender && !hitMayEnd(pair) && !sendersOfBoth_.contains(senderOf(pair));
+  }
+
+  // Call it once for each edge of a pair that can be an error, in their order.
+  bool isError(const Pair& pair, const Edge& edge) {
+    if (!canBeError(pair)) return false;
+    const PipelineGroups& groups = graph_.groups;
+    if (pair.edge->exact || groups.groupsKnown || groups.tablesKnown) return true;
+    const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
+    if (!receiver && !sender) return true;
+    return receiver ? reportedSenders_.insert(senderOf(pair)).second : reported_.insert(edge.stage).second;
   }
 
  private:
   using Sender = std::pair<std::size_t, bool>;  // the site, and whether its misses are meant
 
-  bool receiverAgrees(const Pair& pair) const { return receivers_.contains(pair.edge->stage); }
+  // A hit can end without a closest-hit shader.
+  bool hitMayEnd(const Pair& pair) const {
+    const bool isHit = pair.edge->role != Role::miss && pair.edge->role != Role::callable;
+    return isHit && graph_.groups.hitRecords == HitRecords::byRecord;
+  }
+  static Sender senderOf(const Pair& pair) { return {pair.site, pair.edge->role == Role::miss}; }
+  bool receiverAgrees(const Pair& pair) const { return receivers_.contains(pair.receiver); }
   bool senderAgrees(const Pair& pair) const {
     return pair.alternative || senders_.contains({pair.site, pair.edge->role == Role::miss});
   }
 
   const PipelineGraph& graph_;
-  std::set<std::size_t> receivers_, receiversOfExact_, receiversOfBoth_, reported_;  // stages
+  std::set<std::size_t> receivers_, receiversOfExact_, receiversOfBoth_;  // Pair::receiver
+  std::set<std::size_t> reported_;                                        // stages
   std::set<Sender> senders_, sendersOfBoth_, reportedSenders_;
 };
 
@@ -146,21 +181,47 @@ std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineSt
 }
 
 template <class Site>
-void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
-                const Wording& wording, Report& report) {
-  const std::vector<Pair> pairs = pairsOf(graph, sites, incoming);
+void reportPair(const PipelineGraph& graph, const Site& site, const Pair& pair, const Wording& wording,
+                Report& report) {
+  const spirv::StageFacts& sender = graph.facts(site);
+  const spirv::StageFacts& receiver = graph.facts(*pair.edge);
+  report.add(wording.typeId, graph.location(site),
+             fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
+                         sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
+                         receiver.module().types().describe(pair.received->type), *pair.difference),
+             endsOf(graph, graph.stages[site.stage], pair));
+}
+
+void checkCallPairs(const PipelineGraph& graph, Report& report) {
+  const std::vector<Pair> pairs = pairsOf(graph, graph.calls, StorageClass::IncomingCallableDataKHR, AllEdges{});
   TypeErrors errors(graph, pairs);
-  for (const Pair& pair : pairs) {
-    const Site& site = sites[pair.site];
-    const spirv::StageFacts& sender = graph.facts(site);
-    const spirv::StageFacts& receiver = graph.facts(*pair.edge);
-    const SourceLocation location = graph.location(site);
-    if (errors.isError(pair)) {
-      report.add(wording.typeId, location,
-                 fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
-                             sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
-                             receiver.module().types().describe(pair.received->type), *pair.difference),
-                 endsOf(graph, graph.stages[site.stage], pair));
+  for (const Pair& pair : pairs)
+    if (errors.isError(pair, *pair.edge)) reportPair(graph, graph.calls[pair.site], pair, kCallableData, report);
+}
+
+void checkTracePairs(const PipelineGraph& graph, const PayloadReceivers& receivers, Report& report) {
+  const std::vector<Pair> pairs =
+      pairsOf(graph, graph.traces, StorageClass::IncomingRayPayloadKHR, KindsOfEdges{receivers});
+  TypeErrors errors(graph, pairs);
+  for (auto first = pairs.begin(); first != pairs.end();) {
+    const auto last = std::find_if(first, pairs.end(), [&](const Pair& pair) { return pair.site != first->site; });
+    const TraceSite& site = graph.traces[first->site];
+    std::map<const Edge*, const Pair*> wrong;  // by the first edge of its kind
+    for (auto pair = first; pair != last; ++pair)
+      if (errors.canBeError(*pair)) wrong[pair->edge] = &*pair;
+    first = last;
+    if (wrong.empty()) continue;
+    for (std::size_t i = 0; i < site.edges.size(); ++i) {
+      const auto found = wrong.find(receivers.edges(site)[receivers.kindOf(site, i)]);
+      if (found == wrong.end() || !errors.isError(*found->second, site.edges[i])) continue;
+      // Only names can differ from those of the first one.
+      Pair pair = *found->second;
+      const spirv::StageFacts& receiver = graph.facts(site.edges[i]);
+      pair.edge = &site.edges[i];
+      pair.received = receiver.incoming(StorageClass::IncomingRayPayloadKHR);
+      pair.difference = spirv::differenceOf(graph.facts(site).module().types(), pair.sent->type,
+                                            receiver.module().types(), pair.received->type);
+      if (pair.difference) reportPair(graph, site, pair, kPayloads, report);
     }
   }
 }
@@ -168,7 +229,7 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
 template <class Site>
 void checkLocations(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
                     const Wording& wording, Report& report) {
-  for (const Pair& pair : pairsOf(graph, sites, incoming)) {
+  for (const Pair& pair : pairsOf(graph, sites, incoming, AllEdges{})) {
     const Site& site = sites[pair.site];
     const SourceLocation location = graph.location(site);
     if (pair.difference || !pair.edge->exact || !locationsDiffer(graph.facts(site), pair)) continue;
@@ -259,16 +320,14 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
 
 }  // namespace
 
-void checkPayloadTypes(const CheckInput& input, Report& report) {
-  checkPairs(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR, kPayloads, report);
+void checkPayloadTypes(const CheckInput& input, const PayloadReceivers& receivers, Report& report) {
+  checkTracePairs(input.graph, receivers, report);
   checkQualifiers(input.graph, report);
   checkIncoming(input.graph, StorageClass::IncomingRayPayloadKHR, "rayPayloadInEXT", report);
   checkIncoming(input.graph, StorageClass::IncomingCallableDataKHR, "callableDataInEXT", report);
 }
 
-void checkCallableTypes(const CheckInput& input, Report& report) {
-  checkPairs(input.graph, input.graph.calls, StorageClass::IncomingCallableDataKHR, kCallableData, report);
-}
+void checkCallableTypes(const CheckInput& input, Report& report) { checkCallPairs(input.graph, report); }
 
 void checkSharedLocations(const ProgramInput& input, Report& report) {
   checkLocations(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR, kPayloads, report);

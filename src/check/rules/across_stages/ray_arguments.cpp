@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
@@ -162,18 +164,26 @@ class RayRule {
       const bool used = std::ranges::any_of(
           reads, [&](std::size_t read) { return !onlyCompared(tracer.module(), tracer.accesses()[read].value); });
       if (!used) continue;
-      for (const Edge& edge : site.edges) {
-        if (edge.role != Role::closestHit || !edge.exact) continue;
-        const int line = lineOfHitStore(graph_.facts(edge), leaf);
-        if (line == 0) continue;
-        report_.add(
-            "Q512", location_,
-            fmt::format("this trace ends at the first hit that is found, which need not be the closest one, but "
-                        "the {} writes values of the hit to the payload (line {}), which are read afterwards",
-                        graph_.describe(edge), line));
-        return;
-      }
+      const auto [edge, line] = hitStore(site, leaf);
+      if (!edge) continue;
+      report_.add("Q512", location_,
+                  fmt::format("this trace ends at the first hit that is found, which need not be the closest one, but "
+                              "the {} writes values of the hit to the payload (line {}), which are read afterwards",
+                              graph_.describe(*edge), line));
+      return;
     }
+  }
+
+  // The first closest-hit shader of the trace that stores a value that depends on the hit, and the line; null if none.
+  std::pair<const Edge*, int> hitStore(const TraceSite& site, std::uint32_t leaf) {
+    const auto [found, isNew] = hitStores_.try_emplace({site.targets, leaf}, nullptr, 0);
+    if (!isNew) return found->second;
+    for (const Edge& edge : site.edges) {
+      if (edge.role != Role::closestHit || !edge.exact) continue;
+      const int line = lineOfHitStore(graph_.facts(edge), leaf);
+      if (line != 0) return found->second = {&edge, line};
+    }
+    return found->second;
   }
 
   // Q513
@@ -234,7 +244,8 @@ class RayRule {
   const CheckInput& input_;
   const PipelineGraph& graph_;
   Report& report_;
-  SourceLocation location_;  // of the trace
+  SourceLocation location_;                                                                 // of the trace
+  std::map<std::pair<std::size_t, std::uint32_t>, std::pair<const Edge*, int>> hitStores_;  // by targets and leaf
 };
 
 class StrideRule {

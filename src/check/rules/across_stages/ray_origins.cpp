@@ -10,6 +10,8 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
@@ -221,18 +223,23 @@ void dropZeroAttributes(const PipelineGraph& graph, std::vector<std::vector<Diag
 
 bool isOutgoing(const spirv::SharedVariable& variable) { return variable.storage == spv::StorageClass::RayPayloadKHR; }
 
+// Whether closest-hit stages store their hit position in a member of their payload.
+using StoringStages = std::map<std::pair<std::size_t, std::uint32_t>, bool>;
+
 // Reports the origins that a trace gets from its payload, where a closest-hit shader stored its hit position.
-void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, Report& report) {
+void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, StoringStages& storing, Report& report) {
   const spirv::StageFacts& facts = *graph.stages[stage].facts;
   const spirv::Module& module = facts.module();
   if (std::ranges::none_of(facts.variables(), isOutgoing)) return;
   for (const PayloadOrigin& origin : payloadOrigins(facts, graph.defaults(stage))) {
-    for (const TraceSite& site : graph.traces) {
-      if (site.stage != stage || site.trace->payload != origin.payload) continue;
+    for (const TraceSite& site : graph.tracesOf(stage)) {
+      if (site.trace->payload != origin.payload) continue;
       for (const Edge& edge : site.edges) {
         const bool known = edge.exact || graph.usesLibrary;
-        if (edge.role != Role::closestHit || !known || !storesHitPosition(graph.facts(edge).module(), origin.member))
-          continue;
+        if (edge.role != Role::closestHit || !known) continue;
+        const auto [stores, isNew] = storing.try_emplace({edge.stage, origin.member}, false);
+        if (isNew) stores->second = storesHitPosition(graph.facts(edge).module(), origin.member);
+        if (!stores->second) continue;
         const SourceLocation location = module.location(module.instructions()[origin.trace], "traceRayEXT");
         report.add("Q705", graph.location(graph.stages[stage], location),
                    fmt::format("the ray starts with {} at the hit position that the {} stores in the payload; "
@@ -278,8 +285,10 @@ void checkRayOrigins(const CheckInput& input, Report& report) {
   for (std::size_t i = 0; i < found.size(); ++i)
     for (Diagnostic& d : found[i])
       report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text));
+  StoringStages storing;
   for (std::size_t i = 0; i < graph.stages.size(); ++i)
-    if (graph.stages[i].facts && !graph.stages[i].facts->traces().empty()) checkPayloadOrigins(graph, i, report);
+    if (graph.stages[i].facts && !graph.stages[i].facts->traces().empty())
+      checkPayloadOrigins(graph, i, storing, report);
 }
 
 }  // namespace quintet::check

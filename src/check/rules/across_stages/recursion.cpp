@@ -20,6 +20,7 @@ class TraceChains {
         depth_(graph.stages.size(), 0),
         steps_(graph.stages.size()),
         bytes_(graph.stages.size(), 0) {
+    for (const PipelineStage& stage : graph.stages) frame_.push_back(stage.facts ? stage.facts->frameBytes() : 0);
     for (std::size_t i = 0; i < graph.stages.size(); ++i)
       if (graph.stages[i].kind == shader::Stage::rayGeneration && graph.stages[i].facts) visit(i);
   }
@@ -29,7 +30,7 @@ class TraceChains {
     std::vector<std::size_t> stages;
     const Edge* edge = nullptr;  // of that trace
   };
-  const std::vector<Cycle>& cycles() const { return cycles_; }
+  const std::vector<Cycle>& cycles() const { return cycles_; }  // the first one, or all if Q401 reports them
 
   std::uint32_t depth(std::size_t stage) const { return depth_[stage]; }
   std::uint64_t bytes(std::size_t stage) const { return bytes_[stage]; }
@@ -102,8 +103,7 @@ class TraceChains {
           continue;
         }
         if (state_[edge.stage] == 1) {
-          const auto start = std::ranges::find(path_, edge.stage);
-          cycles_.push_back({&site, {start, path_.end()}, &edge});
+          addCycle(site, edge);
           if (step.next == stage) step.next = edge.stage;
           continue;
         }
@@ -118,9 +118,16 @@ class TraceChains {
     }
     for (const CallSite& site : graph_.callsOf(stage))
       for (const Edge& edge : site.edges) below = std::max(below, bytesOf(edge));
-    bytes_[stage] = graph_.stages[stage].facts->frameBytes() + below;
+    bytes_[stage] = frame_[stage] + below;
     path_.pop_back();
     state_[stage] = 2;
+  }
+
+  // Only Q401 needs all cycles: thousands of hit shaders can close millions.
+  void addCycle(const TraceSite& site, const Edge& edge) {
+    if (!cycles_.empty() && !(graph_.usesLibrary && !graph_.groups.declaredRecursion)) return;
+    const auto start = std::ranges::find(path_, edge.stage);
+    cycles_.push_back({&site, {start, path_.end()}, &edge});
   }
 
   // If it is unknown which of the shaders runs, the chain has at least the length of the shortest one.
@@ -140,13 +147,13 @@ class TraceChains {
     depth = std::max(depth, 1 + depth_[shortest->stage]);
   }
 
-  std::uint64_t bytesOf(const Edge& edge) const { return graph_.facts(edge).frameBytes(); }
+  std::uint64_t bytesOf(const Edge& edge) const { return frame_[edge.stage]; }
 
   const PipelineGraph& graph_;
   std::vector<int> state_;  // 0 new, 1 on the current path, 2 done
   std::vector<std::uint32_t> depth_;
   std::vector<Step> steps_;  // first trace of the longest chain
-  std::vector<std::uint64_t> bytes_;
+  std::vector<std::uint64_t> bytes_, frame_;
   std::vector<std::size_t> path_;
   std::vector<Cycle> cycles_;
 };
@@ -194,8 +201,7 @@ class CallChains {
     if (depth_[stage] != -1) return depth_[stage];
     depth_[stage] = kOpen;
     int depth = 0;
-    for (const CallSite& site : graph_.calls) {
-      if (site.stage != stage) continue;
+    for (const CallSite& site : graph_.callsOf(stage)) {
       const SourceLocation location = graph_.location(site);
       for (const Edge& edge : site.edges) {
         if (!graph_.usesLibrary && !edge.exact) continue;  // which shader runs is unknown

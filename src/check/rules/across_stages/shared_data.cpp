@@ -36,7 +36,7 @@ std::string readLine(const spirv::StageFacts& facts, std::size_t access, const s
                                : fmt::format(" ({}:{})", location.file, location.line);
 }
 
-std::vector<bool> sameTypes(const PipelineGraph& graph, const std::vector<Edge>& edges, const spirv::StageFacts& sender,
+std::vector<bool> sameTypes(const PipelineGraph& graph, std::span<const Edge> edges, const spirv::StageFacts& sender,
                             const spirv::SharedVariable& sent, spv::StorageClass incoming) {
   std::vector<bool> result;
   for (const Edge& edge : edges) {

@@ -31,7 +31,7 @@ SourceLocation locationOf(const spirv::StageFacts& facts, const spirv::AccessFac
 std::string readLine(const spirv::StageFacts& facts, std::size_t access, const std::string& file);
 
 // For each edge, whether the stage receives the type that is sent. True if it receives nothing.
-std::vector<bool> sameTypes(const PipelineGraph& graph, const std::vector<Edge>& edges, const spirv::StageFacts& sender,
+std::vector<bool> sameTypes(const PipelineGraph& graph, std::span<const Edge> edges, const spirv::StageFacts& sender,
                             const spirv::SharedVariable& sent, spv::StorageClass incoming);
 
 // True if the stage writes memory or images, traces or calls.
