@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <iostream>
+#include <optional>
 #include <random>
 
 #include "modules_test_support.h"
@@ -165,6 +166,36 @@ class RandomPipelines {
     std::vector<ModuleStage> modules;
   };
 
+  // The variants of a correct ray generation and miss shader, and a hit group with an instance for each closest-hit and any-hit
+  // shader.
+  Pipeline withGroups(const std::vector<std::pair<std::size_t, std::optional<std::size_t>>>& groups) {
+    Pipeline p;
+    p.groups.noun = "pipeline";
+    p.groups.rays = {""};
+    p.groups.hitRecords = HitRecords::byRecord;
+    p.groups.tablesKnown = true;
+    p.groups.declaredRecursion = 1;
+    p.groups.rayGenerations = {addVariant(p, 0)};
+    p.groups.misses.push_back({{}, addVariant(p, 5), {}, 0});
+    for (const auto& [closestHit, anyHit] : groups) {
+      program::HitGroup group;
+      group.name = std::to_string(p.groups.hitGroups.size());
+      group.shaders[""].closestHit = addVariant(p, closestHit);
+      if (anyHit) group.shaders[""].anyHit = addVariant(p, *anyHit);
+      p.groups.hitGroups.push_back(std::move(group));
+    }
+    p.groups.geometries.resize(groups.size());
+    p.groups.instances.emplace();
+    for (std::uint32_t i = 0; i < groups.size(); ++i) {
+      InstanceRecords instance;
+      instance.facts.firstGeometry = i;
+      instance.facts.geometryCount = 1;
+      instance.recordOffset = i;
+      p.groups.instances->push_back(instance);
+    }
+    return p;
+  }
+
   Pipeline next() {
     Pipeline p;
     p.groups.noun = "pipeline";
@@ -207,7 +238,10 @@ class RandomPipelines {
     for (std::size_t i = 0; i < modules_.size(); ++i)
       if (modules_[i].kind == kind) all.push_back(i);
     // Often the first one, which is correct, so that there are equal stages.
-    const std::size_t i = number(2) == 0 ? all.front() : all[number(static_cast<std::uint32_t>(all.size()))];
+    return addVariant(p, number(2) == 0 ? all.front() : all[number(static_cast<std::uint32_t>(all.size()))]);
+  }
+
+  std::string addVariant(Pipeline& p, std::size_t i) {
     p.modules.push_back(modules_[i]);
     return p.modules.back().name = "stage " + std::to_string(p.modules.size()) + " of " + std::to_string(i);
   }
@@ -255,6 +289,20 @@ TEST(ManyHitGroups, HaveTheDiagnosticsOfTheCheckThatFollowsEachStage) {
   for (const char* id :
        {"Q101", "Q103", "Q104", "Q107", "Q402", "Q502", "Q512", "Q515", "Q606", "Q609", "Q717", "Q719"})
     EXPECT_GT(ids[id], 0) << id;
+}
+
+// Equal closest-hit shaders, which leave the color to the any-hit shader that only one of the groups has.
+TEST(ManyHitGroups, DifferByTheAnyHitShaderBefore) {
+  RandomPipelines random;
+  constexpr std::size_t kWithoutColor = 12, kWritesColor = 22;
+  for (const bool first : {true, false}) {
+    const std::optional<std::size_t> writer(kWritesColor);
+    const RandomPipelines::Pipeline p = random.withGroups(
+        {{kWithoutColor, first ? writer : std::nullopt}, {kWithoutColor, first ? std::nullopt : writer}});
+    const CheckResult merged = checkModules(p.groups, p.modules, {}, true);
+    EXPECT_EQ(textsOf(merged), textsOf(checkModules(p.groups, p.modules, {}, false)));
+    EXPECT_THAT(textsOf(merged), testing::Contains(HasSubstr("Q104"))) << first;
+  }
 }
 
 // ---- Costs
