@@ -26,12 +26,12 @@ set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
 # The longest suites: those that compare many samples with integrals, for every lobe, solid or stack of panes, the ones that
-# explain samples or apply every kind of edit, the coverage of error estimates, and those that check all
-# built-in programs or programs with a mistake of each kind. Together they take a third of the time of all suites. 'make test'
-# leaves them to CI and `ctest --preset release -L long`.
+# explain samples or apply every kind of edit, the coverage of error estimates, and those that check all built-in programs or
+# programs with a mistake of each kind. 'make test' leaves them to `make test SUITES=long`.
 set(QUINTET_LONG_SUITES gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate
   gpu.ExplainedPrograms gpu.Instrument gpu.LampBehindPanes gpu.PaneWeights gpu.PixelExplainer gpu.SessionEdits gpu.SessionExplains
-  gpu.SolidAlpha gpu.SolidFarSide gpu.SolidLight unit.CheckBuiltIn unit.EngineShaders unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation)
+  gpu.SolidAlpha gpu.SolidFarSide gpu.SolidLight unit.CheckBuiltIn unit.EngineShaders unit.LibraryMutation unit.Mistakes
+  unit.ModuleCheck unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)

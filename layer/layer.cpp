@@ -37,8 +37,11 @@ std::map<Key, std::shared_ptr<Instance>> instances;
 std::map<Key, std::shared_ptr<DeviceEntry>> devices;
 
 // Runs when the process exits. Applications can exit without destroying their devices: the reports are then completed here. The
-// Vulkan objects of the layer stay, because the driver can be finalized already, and so can be what messengers use.
+// Vulkan objects of the layer stay, because the driver can be finalized already, and so can be what messengers use. If another
+// thread is creating or destroying a device at this moment, nothing is completed: waiting for it could take forever.
 __attribute__((destructor)) void finishReports() {
+  const std::shared_lock lock(mutex, std::try_to_lock);
+  if (!lock) return;
   for (const auto& [key, instance] : instances) instance->messages.removeMessengers();
   for (const auto& [key, entry] : devices) entry->device->deliverAll();
   for (const auto& [key, instance] : instances) {

@@ -156,7 +156,8 @@ void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
       site.trace = &intended_.emplace_back(std::move(swapped.intended));
     }
     site.targets = targetsOf(*site.trace, known);
-    const TraceTargets& found = targets[site.targets];
+    TraceTargets& found = targets[site.targets];
+    found.traces.push_back(traces.size());
     site.edges = found.edges;
     site.hits = found.hits;
     site.assumesHits = found.assumesHits;

@@ -38,7 +38,7 @@ struct ModuleStage {
   std::vector<std::uint32_t> spirv;  // one entry point, optimized (shader/optimizer.h)
   std::string problem;               // why there is no SPIR-V; empty if there is
   bool malformed = false;  // the problem is a mistake of the module, not something that is unknown to SPIRV-Tools
-  bool isStub = false;     // the module has no statements: a variant of a shader without its code
+  bool isStub = false;     // an intersection shader without statements: a variant of a shader without its code
 };
 
 struct PipelineStage {
@@ -70,8 +70,9 @@ struct Edge {
 // What traces with equal arguments can run. Pipelines of engines have thousands of traces and thousands of hit groups, but
 // few different arguments.
 struct TraceTargets {
-  std::vector<Edge> edges;        // miss shaders, then those of hit groups in the order of `hits`
-  std::vector<HitGroupRay> hits;  // that a hit can use, in their order
+  std::vector<Edge> edges;          // miss shaders, then those of hit groups in the order of `hits`
+  std::vector<HitGroupRay> hits;    // that a hit can use, in their order
+  std::vector<std::size_t> traces;  // in PipelineGraph::traces, in their order
   // One of the hit groups or miss shaders runs, or a record without shaders, but it is unknown which one: the layout of the
   // table is unknown.
   bool assumesHits = false, assumesMisses = false;

@@ -10,6 +10,7 @@
 
 #include "gpu/barrier.h"
 #include "gpu/error.h"
+#include "gpu/mebibytes.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
@@ -28,13 +29,13 @@ VkDeviceSize alignmentOf(const Context& context, const BufferOptions& options) {
 
 void validateSize(const Context& context, const BufferOptions& options) {
   const DeviceInfo& info = context.info();
-  const double size = static_cast<double>(options.size) / kMiB;
+  const double size = mebibytes(options.size);
   if (options.memory == Memory::device && options.size > info.memoryBytes)
     throw MemoryError(fmt::format("buffer '{}' of {:.1f} MiB is larger than the device's memory of {:.1f} MiB",
-                                  options.name, size, static_cast<double>(info.memoryBytes) / kMiB));
+                                  options.name, size, mebibytes(info.memoryBytes)));
   if (options.size > info.maxBufferBytes)
     throw MemoryError(fmt::format("buffer '{}' of {:.1f} MiB is larger than the device's limit of {:.1f} MiB",
-                                  options.name, size, static_cast<double>(info.maxBufferBytes) / kMiB));
+                                  options.name, size, mebibytes(info.maxBufferBytes)));
   context.allocator().checkFreeMemory(options.size, fmt::format("buffer '{}'", options.name));
 }
 
@@ -68,7 +69,7 @@ Buffer::Buffer(Context& context, const BufferOptions& options) : context_(&conte
   const VkResult result =
       vmaCreateBufferWithAlignment(context.allocator().handle(), &info, &allocation, alignmentOf(context, options),
                                    &handle_, &allocation_, &allocated);
-  check(result, fmt::format("allocate {:.1f} MiB for buffer", static_cast<double>(size_) / kMiB), options.name);
+  check(result, fmt::format("allocate {:.1f} MiB for buffer", mebibytes(size_)), options.name);
   context.allocator().track(allocation_, options.purpose);
   mapped_ = static_cast<std::byte*>(allocated.pMappedData);
   VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gpu/error.h"
+#include "gpu/mebibytes.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
@@ -34,8 +35,7 @@ void validateSize(const Context& context, const ImageOptions& options, VkDeviceS
                                   options.name, options.width, options.height, device.maxImageSize));
   if (bytes > device.memoryBytes)
     throw MemoryError(fmt::format("image '{}' of {:.1f} MiB is larger than the device's memory of {:.1f} MiB",
-                                  options.name, static_cast<double>(bytes) / kMiB,
-                                  static_cast<double>(device.memoryBytes) / kMiB));
+                                  options.name, mebibytes(bytes), mebibytes(device.memoryBytes)));
   context.allocator().checkFreeMemory(bytes, fmt::format("image '{}'", options.name));
 }
 
@@ -56,7 +56,7 @@ Image::Image(Context& context, const ImageOptions& options) : context_(&context)
   allocation.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
   if (context.allocator().needsOwnBlock(byteSize())) allocation.flags = VMA_ALLOCATION_CREATE_DEDICATED_MEMORY_BIT;
   check(vmaCreateImage(context.allocator().handle(), &info, &allocation, &handle_, &allocation_, nullptr),
-        fmt::format("allocate {:.1f} MiB for image", static_cast<double>(byteSize()) / kMiB), options.name);
+        fmt::format("allocate {:.1f} MiB for image", mebibytes(byteSize())), options.name);
   context.allocator().track(allocation_, Purpose::textures);
 
   VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};

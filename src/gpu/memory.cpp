@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "gpu/error.h"
+#include "gpu/mebibytes.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
@@ -113,8 +114,7 @@ void Allocator::checkFreeMemory(VkDeviceSize bytes, const std::string& object) c
   const VkDeviceSize free = heap.budget - std::min(used, heap.budget);
   if (bytes <= free) return;
   throw MemoryError(fmt::format("cannot allocate {:.1f} MiB for {}: {:.1f} of the device's {:.1f} MiB are free",
-                                static_cast<double>(bytes) / kMiB, object, static_cast<double>(free) / kMiB,
-                                static_cast<double>(heap.budget) / kMiB));
+                                mebibytes(bytes), object, mebibytes(free), mebibytes(heap.budget)));
 }
 
 }  // namespace quintet::gpu

@@ -11,9 +11,4 @@
 #define VMA_VULKAN_VERSION 1003000
 #include <vk_mem_alloc.h>
 
-namespace quintet::gpu {
-
-constexpr double kMiB = 1024.0 * 1024.0;  // bytes, for messages
-
-}  // namespace quintet::gpu
 #endif

@@ -37,7 +37,7 @@ Printed printedLines(const render::LogContents& log, const program::PrintTable& 
     const std::span<const std::uint32_t> words = log.wordsOf(record);
     if (record.kind != shared::kLogPrint || words.empty() || words[0] >= table.size()) continue;
     const program::PrintSite& site = table[words[0]];
-    if (words.size() != 1 + site.format.wordCount()) continue;
+    if (words.size() != 1 + site.format.wordCount()) continue;  // not of this call
     if (result.lines.size() >= limit) {
       ++result.omitted;
       continue;

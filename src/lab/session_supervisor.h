@@ -49,7 +49,7 @@ class SessionSupervisor {
     compiling_ = false;
   }
   Actions workerEnded(double now, const WorkerEnd& end);
-  // The system could not start a worker. The next command of the page tries it again.
+  // The system could not start a worker. The next command of the page tries again.
   Actions workerMissing(const std::string& message);
   // Call it about once per second.
   Actions tick(double now);

@@ -201,7 +201,10 @@ std::string Types::signature(Id id) const {
 void Types::addSignature(Id id, int depth, std::string& text) const {
   constexpr std::size_t kEnough = 1 << 15;  // too long in any case
   if (text.size() > kEnough) return;
-  if (depth > kMaxNesting) return text.append(kEnough, '?'), void();
+  if (depth > kMaxNesting) {
+    text.append(kEnough, '?');
+    return;
+  }
   const Type& type = get(id);
   text += fmt::format("{}:{}:{}:{}(", static_cast<int>(type.kind), type.width, type.isSigned ? 1 : 0, type.count);
   if (type.kind == Kind::structure) {

@@ -59,8 +59,8 @@ class Types {
   std::string nameOf(Id id) const;
   // As nameOf, but a structure with its members: "struct Hit { vec3 color; bool hit; }".
   std::string describe(Id id) const;
-  // A text that is equal for types that differ from no other type, or from all others in the same way (differenceOf). Empty
-  // if the type is nested too deeply.
+  // Equal for two types that differenceOf() cannot tell apart, whatever type they are compared with. Empty if the type is too
+  // large, or nested too deeply.
   std::string signature(Id id) const;
   // "member 2 'color'" for a structure, "value" for any other type.
   std::string memberName(Id id, std::uint32_t member) const;

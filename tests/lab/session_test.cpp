@@ -218,12 +218,12 @@ TEST_F(LabSession, RewindsToTheFirstFrameInTheSameProcess) {
   done(page, 2);
   EXPECT_GT(colorOf(page.waitForImage(isLossless))[0], 2);
   page.send({{"do", "rewind"}, {"id", 3}});
-  std::size_t processes = 0;
+  std::size_t openings = 0;
   page.waitFor([&](const Json& event) {
-    processes += event.value("event", "") == "worker" || event.value("event", "") == "opened";
+    openings += event.value("event", "") == "worker" || event.value("event", "") == "opened";
     return event.value("event", "") == "done" && event.at("id") == 3;
   });
-  EXPECT_EQ(processes, 0u) << "the program is not opened again";
+  EXPECT_EQ(openings, 0u) << "the program is not opened again";
   const ReceivedImage first =
       page.waitForImage([](const lab::ImageHeader& header) { return header.samples == 1 && isLossless(header); });
   EXPECT_EQ(colorOf(first)[0], 0);

@@ -11,6 +11,23 @@
 namespace quintet::test {
 namespace {
 
+// The outputs of the program in an image of 2 by 2 pixels.
+struct Picks {
+  io::Image colors;
+  std::vector<vec4> hits, positions, normals;  // normals: with the material
+};
+
+Picks pick(const SceneBuilder& scene) {
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
+  options.program = program::loadProgram("pick");
+  options.width = options.height = 2;
+  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
+  renderer.renderBatch(1);
+  const render::Film& film = renderer.film();
+  return {film.download(0), film.plane(1).values, film.plane(2).values, film.plane(3).values};
+}
+
 // The boxes are the first geometry of the scene, and the mesh behind them has two: each hit has the normal and the material of
 // its own geometry, which is custom for the boxes only.
 TEST(PickProgram, ReadsTheGeometryOfTheHit) {
@@ -23,16 +40,7 @@ TEST(PickProgram, ReadsTheGeometryOfTheHit) {
   scene.scene.materials.push_back(lambert(vec3(0.25f)));
   scene.scene.meshes.back().geometries.push_back(second);
   scene.camera(orthographic({0, 0, 5}, {0, 0, 0}, 1.0f));
-  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
-  ImageOptions options;
-  options.program = program::loadProgram("pick");
-  options.width = options.height = 2;
-  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
-  renderer.renderBatch(1);
-  // The outputs: color, hit, position, normal and material.
-  const io::Image colors = renderer.film().download(0);
-  const std::vector<vec4> hits = renderer.film().plane(1).values, positions = renderer.film().plane(2).values,
-                          normals = renderer.film().plane(3).values;
+  const auto [colors, hits, positions, normals] = pick(scene);
   ASSERT_EQ(hits.size(), 4u);
   for (std::uint32_t i = 0; i < 2; ++i) {  // in the upper row
     EXPECT_EQ(hits[i].x, 2.0f) << "the second instance";
@@ -50,16 +58,10 @@ TEST(PickProgram, AMissIsBlackAndNoInstance) {
   SceneBuilder scene;
   scene.add(quad({-1, -9, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)));
   scene.camera(orthographic({0, 0, 5}, {0, 0, 0}, 1.0f));
-  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
-  ImageOptions options;
-  options.program = program::loadProgram("pick");
-  options.width = options.height = 2;
-  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
-  renderer.renderBatch(1);
-  const io::Image colors = renderer.film().download(0);
+  const Picks picks = pick(scene);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    EXPECT_THAT(colors.pixel<float>(i % 2, i / 2), testing::ElementsAre(0, 0, 0, 1)) << i;
-    EXPECT_EQ(renderer.film().plane(1).values[i], vec4(0)) << i;
+    EXPECT_THAT(picks.colors.pixel<float>(i % 2, i / 2), testing::ElementsAre(0, 0, 0, 1)) << i;
+    EXPECT_EQ(picks.hits.at(i), vec4(0)) << i;
   }
 }
 

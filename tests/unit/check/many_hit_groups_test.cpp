@@ -100,9 +100,8 @@ std::vector<Variant> variants() {
   const std::string second =
       "traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFF, 1, 1, 1, vec3(0), 0.001, vec3(0, 0, 1), 100.0, 0);\n";
   const std::string visibility =
-      "visible = 0.0;\ntraceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 1, p.normal, 0.0, vec3(0, 1, "
-      "0), "
-      "9.0, 1);\n";
+      "visible = 0.0;\n"
+      "traceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 1, p.normal, 0.0, vec3(0, 1, 0), 9.0, 1);\n";
   const std::string firstHit =
       "traceRayEXT(tlas, gl_RayFlagsTerminateOnFirstHitEXT, 0xFF, 0, 1, 0, vec3(0), 0.001, vec3(0, 0, 2), 100.0, 0);\n";
   const std::string nested = kIncoming + kTlas + "layout(location = 1) rayPayloadEXT Payload inner;\n";

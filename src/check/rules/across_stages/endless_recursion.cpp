@@ -58,7 +58,7 @@ class EndlessRecursion {
       if (isUnconditional(site)) sites_.push_back(&site);
     // The largest set of traces of which each leads to a stage with another one.
     for (bool changed = true; changed;) {
-      countSites();
+      noteStages();
       changed = std::erase_if(sites_, [&](const TraceSite* site) { return !next(*site); }) > 0;
     }
   }
@@ -95,7 +95,7 @@ class EndlessRecursion {
   }
 
   // Notes the stages of `sites_`, on which next() depends.
-  void countSites() {
+  void noteStages() {
     hasSite_.assign(graph_.stages.size(), false);
     for (const TraceSite* site : sites_) hasSite_[site->stage] = true;
     next_.clear();

@@ -191,8 +191,6 @@ Id withoutOffset(const spirv::Module& module, Id t) {
 class HitPositions {
  public:
   HitPositions(const CheckInput& input, Report& report) : graph_(input.graph), report_(report) {
-    tracesOf_.resize(graph_.targets.size());
-    for (const TraceSite& site : graph_.traces) tracesOf_[site.targets].push_back(&site);
     tracesTo_.resize(graph_.stages.size());
     for (std::size_t targets = 0; targets < graph_.targets.size(); ++targets)
       for (const Edge& edge : graph_.targets[targets].edges)
@@ -225,17 +223,19 @@ class HitPositions {
     if (!first) return;
     add(stage, position,
         "the hit position is computed with the normalized direction, but the ray was traced with a direction that is "
-        "not "
-        "normalized",
+        "not normalized",
         *first);
   }
 
   const TraceSite* firstWithOtherLength(std::size_t targets) {
     const auto [known, isNew] = otherLength_.try_emplace(targets, nullptr);
     if (!isNew) return known->second;
-    const auto& traces = tracesOf_[targets];
-    const auto found = std::ranges::find_if(traces, [&](const TraceSite* site) { return hasOtherLength(*site); });
-    return known->second = found == traces.end() ? nullptr : *found;
+    for (const std::size_t trace : graph_.targets[targets].traces) {
+      if (!hasOtherLength(graph_.traces[trace])) continue;
+      known->second = &graph_.traces[trace];
+      break;
+    }
+    return known->second;
   }
 
   // The shader that traced the ray gets t in the payload.
@@ -323,7 +323,6 @@ class HitPositions {
 
   const PipelineGraph& graph_;
   Report& report_;
-  std::vector<std::vector<const TraceSite*>> tracesOf_;                 // by targets, in their order
   std::vector<std::set<std::size_t>> tracesTo_;                         // targets by closest-hit stage
   std::map<std::size_t, const TraceSite*> otherLength_;                 // by targets
   std::map<std::pair<std::size_t, std::uint32_t>, bool> storesPlainT_;  // by targets and leaf

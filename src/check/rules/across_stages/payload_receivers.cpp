@@ -66,14 +66,7 @@ std::string keyOf(const PayloadReceiver& receiver) {
 PayloadReceivers::PayloadReceivers(const PipelineGraph& graph) : graph_(graph) {
   addClasses(graph);
   addKinds(graph);
-  edges_.resize(graph.targets.size());
-  kindOf_.resize(graph.targets.size());
-  hits_.resize(graph.targets.size());
-  tracesOf_.resize(graph.targets.size());
-  for (const TraceSite& site : graph.traces) {
-    tracesOf_[site.targets].push_back(&site);
-    if (tracesOf_[site.targets].size() == 1) addTargets(graph, site.targets, site);
-  }
+  for (const TraceTargets& targets : graph.targets) addTargets(graph, targets);
 }
 
 void PayloadReceivers::addClasses(const PipelineGraph& graph) {
@@ -116,31 +109,34 @@ void PayloadReceivers::addKinds(const PipelineGraph& graph) {
   }
 }
 
-void PayloadReceivers::addTargets(const PipelineGraph& graph, std::size_t targets, const TraceSite& site) {
+void PayloadReceivers::addTargets(const PipelineGraph& graph, const TraceTargets& targets) {
   constexpr std::size_t kNone = ~std::size_t{0};
   const auto anyHitOf = [&](HitGroupRay hit) {
-    for (const Edge& edge : edgesOf(site.edges, hit))
+    for (const Edge& edge : edgesOf(targets.edges, hit))
       if (edge.role == Role::anyHit) return kindOfStage_[edge.stage];
     return kNone;
   };
   std::map<std::tuple<Role, bool, std::size_t, std::size_t>, std::size_t> known;
-  for (const Edge& edge : site.edges) {
+  std::vector<const Edge*>& edges = edges_.emplace_back();
+  std::vector<std::size_t>& kindOf = kindOf_.emplace_back();
+  for (const Edge& edge : targets.edges) {
     const std::size_t anyHit = edge.role == Role::closestHit ? anyHitOf(edge.hit) : kNone;
     const auto [found, isNew] =
-        known.try_emplace({edge.role, edge.exact, kindOfStage_[edge.stage], anyHit}, edges_[targets].size());
-    if (isNew) edges_[targets].push_back(&edge);
-    kindOf_[targets].push_back(found->second);
+        known.try_emplace({edge.role, edge.exact, kindOfStage_[edge.stage], anyHit}, edges.size());
+    if (isNew) edges.push_back(&edge);
+    kindOf.push_back(found->second);
   }
   std::map<std::pair<bool, std::size_t>, std::size_t> knownHits;
-  for (const HitGroupRay hit : site.hits)
+  std::vector<HitGroupRay>& hits = hits_.emplace_back();
+  for (const HitGroupRay hit : targets.hits)
     if (knownHits.try_emplace({graph.shaders(hit).closestHit.empty(), anyHitOf(hit)}, 0).second || !graph.mergesEqual)
-      hits_[targets].push_back(hit);
+      hits.push_back(hit);
 }
 
 std::vector<const TraceSite*> PayloadReceivers::tracesTo(std::size_t stage) const {
   std::vector<const TraceSite*> result;
   for (const std::size_t targets : tracesTo_[stage])
-    result.insert(result.end(), tracesOf_[targets].begin(), tracesOf_[targets].end());
+    for (const std::size_t trace : graph_.targets[targets].traces) result.push_back(&graph_.traces[trace]);
   if (tracesTo_[stage].size() > 1) std::ranges::sort(result);  // they are elements of one vector
   return result;
 }

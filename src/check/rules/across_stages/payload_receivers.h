@@ -45,13 +45,14 @@ class PayloadReceivers {
   template <class Test>
   bool anyTraceTo(std::size_t stage, const Test& test) const {
     return std::ranges::any_of(tracesTo_[stage], [&](std::size_t targets) {
-      return std::ranges::any_of(tracesOf_[targets], [&](const TraceSite* site) { return test(*site); });
+      return std::ranges::any_of(graph_.targets[targets].traces, [&](std::size_t i) { return test(graph_.traces[i]); });
     });
   }
   // True if all traces pass the test, which depends only on their arguments.
   template <class Test>
   bool allTraces(const Test& test) const {
-    return std::ranges::all_of(tracesOf_, [&](const auto& traces) { return traces.empty() || test(*traces.front()); });
+    return std::ranges::all_of(graph_.targets,
+                               [&](const TraceTargets& t) { return test(graph_.traces[t.traces.front()]); });
   }
   // In their order: the traces that can run the stage, other than as an intersection shader.
   std::vector<const TraceSite*> tracesTo(std::size_t stage) const;
@@ -62,14 +63,13 @@ class PayloadReceivers {
  private:
   void addClasses(const PipelineGraph& graph);
   void addKinds(const PipelineGraph& graph);
-  void addTargets(const PipelineGraph& graph, std::size_t targets, const TraceSite& site);
+  void addTargets(const PipelineGraph& graph, const TraceTargets& targets);
 
   const PipelineGraph& graph_;
   std::vector<PayloadReceiver> classes_;
-  std::vector<std::size_t> classOf_, kindOfStage_;       // by stage
-  std::vector<std::vector<std::size_t>> tracesTo_;       // targets by stage
-  std::vector<std::vector<const TraceSite*>> tracesOf_;  // by targets, in their order
-  std::vector<std::vector<const Edge*>> edges_;          // by targets
+  std::vector<std::size_t> classOf_, kindOfStage_;  // by stage
+  std::vector<std::vector<std::size_t>> tracesTo_;  // targets by stage
+  std::vector<std::vector<const Edge*>> edges_;     // by targets
   std::vector<std::vector<std::size_t>> kindOf_;
   std::vector<std::vector<HitGroupRay>> hits_;
   mutable std::map<std::string, std::vector<bool>> sameTypes_;  // by the signature of what is sent

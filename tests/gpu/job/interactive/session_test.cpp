@@ -181,7 +181,9 @@ TEST_F(SessionTest, SamplesAndSizesAreThoseOfTheRequest) {
   EXPECT_EQ(session->state().size, uvec2(30, 50));
 }
 
-TEST_F(SessionTest, TheSizeOfAWindowIsNoStepOfUndo) {
+class SessionCamera : public SessionTest {};
+
+TEST_F(SessionCamera, TheSizeOfAWindowIsNoStepOfUndo) {
   const auto session = makeSession(request());
   session->apply(SetExposure{1});
   session->apply(SetSize{{30, 50}, /*ofWindow=*/true});
@@ -196,7 +198,7 @@ TEST_F(SessionTest, TheSizeOfAWindowIsNoStepOfUndo) {
   EXPECT_EQ(session->state().size, uvec2(20, 10));
 }
 
-TEST_F(SessionTest, AnAutomaticCameraFollowsTheSize) {
+TEST_F(SessionCamera, AnAutomaticCameraFollowsTheSize) {
   std::string scene = std::string(kScene).substr(0, std::string(kScene).find("[[camera]]"));
   writeFile(folder_ / "a.scene.toml", scene);
   const auto session = makeSession(request());
@@ -219,7 +221,7 @@ TEST_F(SessionTest, AnAutomaticCameraFollowsTheSize) {
 }
 
 // Without --size, the first camera decides it.
-TEST_F(SessionTest, TheSizeStaysWhenTheSceneIsBuiltAgain) {
+TEST_F(SessionCamera, TheSizeStaysWhenTheSceneIsBuiltAgain) {
   writeFile(folder_ / "a.scene.toml", std::string(kScene) + "aspect = 2.0\n");
   RenderRequest noHeight = request(1);
   noHeight.size = {40, 0};
@@ -235,7 +237,7 @@ TEST_F(SessionTest, TheSizeStaysWhenTheSceneIsBuiltAgain) {
   EXPECT_EQ(session->image().height, 20u);
 }
 
-TEST_F(SessionTest, AnAutomaticCameraStaysWhenInstancesMove) {
+TEST_F(SessionCamera, AnAutomaticCameraStaysWhenInstancesMove) {
   writeFile(folder_ / "a.scene.toml", std::string(kScene).substr(0, std::string(kScene).find("[[camera]]")));
   const auto session = makeSession(request());
   session->apply(Move{"left", {0, 5, 0}});
@@ -437,7 +439,9 @@ TEST_F(SessionTest, AProgramThatAccumulatesSuspendsTheShutter) {
   EXPECT_TRUE(test::equalSums(sums(*session), before));
 }
 
-TEST_F(SessionTest, PicksWhatIsVisible) {
+class SessionPicks : public SessionTest {};
+
+TEST_F(SessionPicks, WhatIsVisible) {
   writeFile(folder_ / "a.scene.toml", litScene());  // several geometries, whose hit records depend on the ray types
   const auto session = makeSession(request());
   session->apply(SetCamera{{.lookFrom = vec3(3, 0, 8), .lookAt = vec3(3, 0, 0)}});
@@ -469,7 +473,7 @@ TEST_F(SessionTest, PicksWhatIsVisible) {
 }
 
 // A surface close to the camera, and a lens: picking uses its center.
-TEST_F(SessionTest, PicksThroughTheCenterOfTheLens) {
+TEST_F(SessionPicks, ThroughTheCenterOfTheLens) {
   const auto session = makeSession(request());
   session->apply(SetCamera{{.lookFrom = vec3(0.1f, 0.1f, 1.2f), .lookAt = vec3(0.1f, 0.1f, 0)}});
   const std::optional<Pick> pinhole = session->pick({20, 12});
@@ -481,7 +485,7 @@ TEST_F(SessionTest, PicksThroughTheCenterOfTheLens) {
 }
 
 // The path tracer has two ray types and the lesson one, of a program that intersects the boxes itself.
-TEST_F(SessionTest, PicksSolidsAndBoxes) {
+TEST_F(SessionPicks, SolidsAndBoxes) {
   writeFile(folder_ / "a.scene.toml",
             "[[material]]\nname = \"clay\"\n"
             "[[spheres]]\nname = \"ball\"\nmaterial = \"clay\"\nitems = [{ center = [0, 0, 0], radius = 1.5 }]\n");
