@@ -37,13 +37,22 @@ FirstSurface aovFirst;
 #endif
 
 #ifdef AOV_LIGHT
-// Fractions of the first scattering event that are diffuse and specular; the rest is transmission. [0]: for the path's
-// direction; [1]: for the shadow ray's.
-vec3 aovDiffuse[2];
-vec3 aovSpecular[2];
+// Fractions of a scattering event that are diffuse and specular; the rest is transmission.
+struct ScatteringFractions {
+  vec3 diffuse;
+  vec3 specular;
+};
+struct ScatteredLight {
+  vec3 diffuse;
+  vec3 specular;
+  vec3 transmission;
+};
+// Structures instead of arrays, because of a defect of NVIDIA's driver (docs/design/quirks.md).
+ScatteringFractions aovPath;       // of the first scattering event, for the path's direction
+ScatteringFractions aovShadowRay;  // the same for the shadow ray's
+ScatteredLight aovDirect;
+ScatteredLight aovIndirect;
 vec3 aovEmission, aovBackground;
-vec3 aovDirect[3];  // diffuse, specular, transmission
-vec3 aovIndirect[3];
 #endif
 
 // Called when a path starts.
@@ -53,7 +62,7 @@ void aovBegin() {
 #endif
 #ifdef AOV_LIGHT
   aovEmission = aovBackground = vec3(0.0);
-  for (int i = 0; i < 3; ++i) aovDirect[i] = aovIndirect[i] = vec3(0.0);
+  aovDirect = aovIndirect = ScatteredLight(vec3(0.0), vec3(0.0), vec3(0.0));
 #endif
 }
 
@@ -72,15 +81,16 @@ void aovScatter(uint depth, bool towardsLight, Bsdf bsdf, vec3 wi, vec3 f) {
 #ifdef AOV_LIGHT
   if (depth > 0u) return;
   const vec3 diffuse = clamp(bsdfEvalDiffuse(bsdf, wi) / max(f, vec3(1e-30)), 0.0, 1.0);
-  aovDiffuse[towardsLight ? 1 : 0] = wi.z > 0.0 ? diffuse : vec3(0.0);
-  aovSpecular[towardsLight ? 1 : 0] = wi.z > 0.0 ? 1.0 - diffuse : vec3(0.0);
+  ScatteringFractions fractions = ScatteringFractions(vec3(0.0), vec3(0.0));
+  if (wi.z > 0.0) fractions = ScatteringFractions(diffuse, 1.0 - diffuse);
+  if (towardsLight) aovShadowRay = fractions;
+  else aovPath = fractions;
 #endif
 }
 void aovScatterDelta(uint depth, bool transmitted) {
 #ifdef AOV_LIGHT
   if (depth > 0u) return;
-  aovDiffuse[0] = vec3(0.0);
-  aovSpecular[0] = vec3(transmitted ? 0.0 : 1.0);
+  aovPath = ScatteringFractions(vec3(0.0), vec3(transmitted ? 0.0 : 1.0));
 #endif
 }
 
@@ -88,7 +98,7 @@ void aovScatterDelta(uint depth, bool transmitted) {
 void aovScatterMedium(uint depth) {
 #ifdef AOV_LIGHT
   if (depth > 0u) return;
-  for (int i = 0; i < 2; ++i) aovDiffuse[i] = aovSpecular[i] = vec3(0.0);
+  aovPath = aovShadowRay = ScatteringFractions(vec3(0.0), vec3(0.0));
 #endif
 }
 
@@ -100,12 +110,19 @@ void aovRadiance(vec3 contribution, uint scatterings, uint source) {
     else aovEmission += contribution;
     return;
   }
-  const int direction = scatterings == 1u && source == kFromShadowRay ? 1 : 0;
-  const vec3 parts[3] = vec3[3](aovDiffuse[direction], aovSpecular[direction],
-                                 vec3(1.0) - aovDiffuse[direction] - aovSpecular[direction]);
-  for (int i = 0; i < 3; ++i) {
-    if (scatterings == 1u) aovDirect[i] += parts[i] * contribution;
-    else aovIndirect[i] += parts[i] * contribution;
+  ScatteringFractions fractions = aovPath;
+  if (scatterings == 1u && source == kFromShadowRay) fractions = aovShadowRay;
+  const vec3 diffuse = fractions.diffuse * contribution;
+  const vec3 specular = fractions.specular * contribution;
+  const vec3 transmission = (vec3(1.0) - fractions.diffuse - fractions.specular) * contribution;
+  if (scatterings == 1u) {
+    aovDirect.diffuse += diffuse;
+    aovDirect.specular += specular;
+    aovDirect.transmission += transmission;
+  } else {
+    aovIndirect.diffuse += diffuse;
+    aovIndirect.specular += specular;
+    aovIndirect.transmission += transmission;
   }
 #endif
 }
@@ -127,22 +144,22 @@ void aovEnd(uvec2 pixel, uint index) {
   AOV_ADD(background, aovBackground)
 #endif
 #ifdef QUINTET_OUTPUT_direct_diffuse
-  AOV_ADD(direct_diffuse, aovDirect[0])
+  AOV_ADD(direct_diffuse, aovDirect.diffuse)
 #endif
 #ifdef QUINTET_OUTPUT_direct_specular
-  AOV_ADD(direct_specular, aovDirect[1])
+  AOV_ADD(direct_specular, aovDirect.specular)
 #endif
 #ifdef QUINTET_OUTPUT_direct_transmission
-  AOV_ADD(direct_transmission, aovDirect[2])
+  AOV_ADD(direct_transmission, aovDirect.transmission)
 #endif
 #ifdef QUINTET_OUTPUT_indirect_diffuse
-  AOV_ADD(indirect_diffuse, aovIndirect[0])
+  AOV_ADD(indirect_diffuse, aovIndirect.diffuse)
 #endif
 #ifdef QUINTET_OUTPUT_indirect_specular
-  AOV_ADD(indirect_specular, aovIndirect[1])
+  AOV_ADD(indirect_specular, aovIndirect.specular)
 #endif
 #ifdef QUINTET_OUTPUT_indirect_transmission
-  AOV_ADD(indirect_transmission, aovIndirect[2])
+  AOV_ADD(indirect_transmission, aovIndirect.transmission)
 #endif
 #ifdef QUINTET_OUTPUT_cryptomatte_object
   storeCoverage(kOutput_cryptomatte_object, pixel, index, aovFirst.hit ? kCoverageId + aovFirst.instance : 0u);

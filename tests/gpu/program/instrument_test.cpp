@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -80,13 +81,20 @@ TEST(Instrument, KeepsTheImageOfLessons) {
     render::RenderSettings settings;
     settings.width = settings.height = 16;
     settings.parameters = program::ParameterValues(program.parameters);
-    const auto image = [&](bool instrument) {
+    const auto render = [&](bool instrument) {
       settings.instrument = instrument;
       render::Renderer renderer = makeRenderer(device, program, settings);
       renderer.renderBatch(1);
-      return renderer.image().data;
+      return renderer.image();
     };
-    EXPECT_EQ(image(true), image(false)) << name;
+    const auto checked = render(true), plain = render(false);
+    // The compilers of GPUs contract other expressions of other code.
+    float worst = 0.0f;
+    for (std::uint32_t y = 0; y < settings.height; ++y)
+      for (std::uint32_t x = 0; x < settings.width; ++x)
+        for (std::size_t c = 0; c < 4; ++c)
+          worst = std::max(worst, std::abs(checked.pixel<float>(x, y)[c] - plain.pixel<float>(x, y)[c]));
+    EXPECT_LE(worst, testContext().info().software ? 0.0f : 1e-4f) << name;
   }
 }
 
