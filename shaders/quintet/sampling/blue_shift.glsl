@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Digital shifts that distribute one net over the pixels of a tile. The errors of neighboring pixels then cancel in the
-// mean, and the remaining error is blue noise. The hierarchical order of the pixels and its random permutations are
-// those of A. Ahmed & P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical
-// Ordering of Pixels", ACM TOG 39(6), 2020. Unlike their method, this one does not need the number of samples in
-// advance.
+// mean, and the remaining error is blue noise. The hierarchical order of the pixels is that of A. Ahmed & P. Wonka,
+// "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", ACM TOG 39(6),
+// 2020. Unlike their method, this one does not need the number of samples in advance, and permutes by a binary scramble.
 //
 // Let s(t) be the polynomial over the integers modulo 2 whose coefficients are the bits of a sample's index. The
 // digits of the first two Sobol dimensions are its Taylor coefficients at t = 0 and t = 1. A pixel whose
@@ -18,7 +17,7 @@
 #ifndef QUINTET_SAMPLING_BLUE_SHIFT_GLSL
 #define QUINTET_SAMPLING_BLUE_SHIFT_GLSL
 
-#include "hash.glsl"
+#include "scramble.glsl"
 
 const uint kTileBits = 6u;  // tiles of 64 x 64 pixels
 
@@ -30,50 +29,25 @@ uint spreadBits(uint x) {
   return (x | x << 1) & 0x55555555u;
 }
 
-// Morton index of the pixel in its tile.
-uint mortonInTile(uvec2 pixel) {
+// Morton index of the pixel in its tile, with its bits reversed: the bit that distinguishes the halves of the tile is bit 0.
+uint reversedMortonInTile(uvec2 pixel) {
   const uint mask = (1u << kTileBits) - 1u;
-  return spreadBits(pixel.x & mask) | spreadBits(pixel.y & mask) << 1;
+  return bitfieldReverse(spreadBits(pixel.x & mask) | spreadBits(pixel.y & mask) << 1) >> 32u - 2u * kTileBits;
 }
 
-// The functions below compute with all base-4 digits of a Morton index at once. Digit c_i has the bits 2i and 2i + 1.
-const uint kLowBits = 0x555u;  // bit 0 of each digit
-
-// Multiplies each digit, as an element of the field with four elements, by t to the power of a digit 0, 1 or 2 of `powers`.
-uint timesPowerOfT(uint digits, uint powers) {
-  const uint once = (powers & kLowBits) * 3u;
-  const uint twice = (powers >> 1 & kLowBits) * 3u;
-  const uint low = digits & kLowBits;
-  const uint high = digits >> 1 & kLowBits;
-  const uint sum = low ^ high;  // t · (low + high t) = high + (low + high) t, because t² = t + 1
-  return digits & ~(once | twice) | (high | sum << 1) & once | (sum | low << 1) & twice;
-}
-
-// Replaces each digit by a random permutation of 0 … 3, which depends on the digits above it. All 24 of them have the form
-// t^k c + b or t^k c² + b in the field with four elements.
-uint permuteDigits(uint morton, uint seed) {
-  const uint marked = morton | 1u << 2u * kTileBits;
-  uint added = 0u, squared = 0u, powers = 0u;  // each level appends to the upper bits
-  for (uint level = 0u; level < kTileBits; ++level) {
-    uint random = seed ^ (marked >> 2u * level + 2u) * 0x9E3779B9u;
-    random ^= random >> 15;
-    random *= 0x2C1B3C6Du;
-    added = added >> 2 | random & 0xC0000000u;
-    squared = squared >> 2 | random & 0x20000000u;
-    powers = powers >> 2 | (random & 0x1FFFC000u) * 3u & 0x60000000u;  // the upper part of 15 bits times 3
-  }
-  const uint unused = 32u - 2u * kTileBits;
-  const uint digits = morton ^ morton >> 1 & squared >> unused - 1u;  // c² is c, except that 2 and 3 are exchanged
-  return timesPowerOfT(digits, powers >> unused - 1u) ^ added >> unused;
+// The base-4 digits c_i of a pixel: its Morton index, in which each bit is flipped or not, depending on the bits above it.
+// Digit c_i has the bits 2i and 2i + 1.
+uint permutedMorton(uint reversedMorton, uint seed) {
+  return bitfieldReverse(permuteUpwards(reversedMorton, seed)) >> 32u - 2u * kTileBits;
 }
 
 // Shifts of x and y, first digit in bit 0: the first 32 Taylor coefficients of c_0/q + … + c_5/q⁶ at t = 0 and at t = 1.
 // The common numerator is c_0 q⁵ + … + c_5, and 1/q⁶ = q²/q⁸ = q² (1 + t⁸)/(1 + t²⁴), because squares of sums are sums
 // of squares.
-uvec2 blueShift(uint morton, uint seed) {
-  const uint digits = permuteDigits(morton, seed);
+uvec2 blueShift(uint reversedMorton, uint seed) {
+  const uint digits = permutedMorton(reversedMorton, seed);
   // Both numerators in one word, 16 bits each. q is the same polynomial in t and in t - 1, and c = bit 0 + bit 1 + (bit 1) (t - 1).
-  uint p = digits | (digits ^ digits >> 1 & kLowBits) << 16;
+  uint p = digits | (digits ^ digits >> 1 & 0x555u) << 16;
   // Pairs: c_2i q + c_2i+1. Then all three: (c_0 q + c_1) q⁴ + (c_2 q + c_3) q² + (c_4 q + c_5), q⁴ = t⁸ + t⁴ + 1.
   const uint even = p & 0x33333333u;
   p = p >> 2 & 0x33333333u ^ even ^ even << 1 ^ even << 2;

