@@ -13,7 +13,7 @@
 #
 # GALLIVM_PERF=nopt makes lavapipe compile a pipeline without the optimizations of LLVM, in less than half of the time.
 # Tests that compile much and trace few rays take half as long with it. The tests of images, the lessons, the oracle and
-# the command line use the driver as users do. Other drivers ignore the variable.
+# the long ones of the command line and the window use the driver as users do. Other drivers ignore the variable.
 include(ProcessorCount)
 ProcessorCount(QUINTET_CORES)
 math(EXPR QUINTET_DEVICE_JOBS "(${QUINTET_CORES} + 7) / 8")
@@ -26,12 +26,14 @@ set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
 # The longest suites: those that compare many samples with integrals, for every lobe, solid or stack of panes, the ones that
-# explain samples or apply every kind of edit, the coverage of error estimates, and those that check all built-in programs or
-# programs with a mistake of each kind. 'make test' leaves them to `make test SUITES=long`.
-set(QUINTET_LONG_SUITES gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate
-  gpu.ExplainedPrograms gpu.Instrument gpu.LampBehindPanes gpu.PaneWeights gpu.PixelExplainer gpu.SessionEdits gpu.SessionExplains
-  gpu.SolidAlpha gpu.SolidFarSide gpu.SolidLight unit.CheckBuiltIn unit.EngineShaders unit.LibraryMutation unit.Mistakes
-  unit.ModuleCheck unit.Mutation)
+# explain samples or apply every kind of edit, the coverage of error estimates, those that check all built-in programs or
+# programs with a mistake of each kind, and thousands of random inputs. 'make test' leaves them to `make test SUITES=long`.
+set(QUINTET_LONG_SUITES api.ApiExplanation
+  gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
+  gpu.LampBehindPanes gpu.PaneWeights gpu.PixelExplainer gpu.SessionEdits gpu.SessionExplains gpu.SolidAlpha gpu.SolidFarSide
+  gpu.SolidGlass gpu.SolidLight
+  unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.GltfFuzz unit.LectureFuzz
+  unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.ProgramFuzz)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
