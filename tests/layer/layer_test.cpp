@@ -361,7 +361,7 @@ TEST_P(LayerCorrect, IsNotReported) {
   if (feature == "Indirect2") app.trace = Trace::indirect2;
   if (feature == "Opaque") app.opaque = true;
   if (feature == "NoDebugInfo") app.debugInfo = false;
-  if (feature == "Stack") app.stack = 1u << 16;
+  if (feature == "Stack") app.stack = 1u << 13;  // NVIDIA loses the device with 64 KiB
   if (feature == "Constants") {
     replace(app.shaders.at("a.rgen"), "void main() {", "layout(constant_id = 0) const uint kMiss = 7u;\nvoid main() {");
     replace(app.shaders.at("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, kMiss,");
