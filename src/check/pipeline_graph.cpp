@@ -93,6 +93,8 @@ void PipelineGraph::compareRecords() {
   for (const PipelineStage& stage : stages) {
     if (!stage.facts) continue;
     for (const spirv::TraceFacts& trace : stage.facts->traces()) {
+      // The search counts.
+      if (trace.part == spirv::TracePart::execution && trace.ray != spirv::Module::kNone) continue;
       if (!first) first = &trace;
       if (first == &trace) continue;
       if (!same(first->offset, trace.offset) || !same(first->stride, trace.stride)) sameHitRecords_ = false;
@@ -111,6 +113,12 @@ const PipelineStage* PipelineGraph::stage(const std::string& file) const {
 }
 
 std::span<const TraceSite> PipelineGraph::tracesOf(std::size_t stage) const { return sitesOf(traces, stage); }
+
+std::optional<spirv::RayOperands> PipelineGraph::ray(const TraceSite& site) const {
+  const std::size_t instruction = site.trace->ray;
+  if (instruction == spirv::Module::kNone) return {};
+  return spirv::rayOperands(facts(site).module().instructions()[instruction]);
+}
 
 std::span<const CallSite> PipelineGraph::callsOf(std::size_t stage) const { return sitesOf(calls, stage); }
 
@@ -150,9 +158,9 @@ void PipelineGraph::addEdge(std::vector<Edge>& edges, const std::string& file, E
 
 void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
   for (const spirv::TraceFacts& trace : stages[stage].facts->traces()) {
-    TraceSite site{stage, &trace, 0, {}, {}, false, false, {}};
+    TraceSite site{stage, &trace, 0, {}, {}, false, false, false, {}};
     if (auto swapped = findSwappedArguments(*stages[stage].facts, trace, rayCount()); !swapped.texts.empty()) {
-      site.swapped = std::move(swapped.texts);
+      if (!site.isExecution()) site.swapped = std::move(swapped.texts);  // the search reports it
       site.trace = &intended_.emplace_back(std::move(swapped.intended));
     }
     site.targets = targetsOf(*site.trace, known);
@@ -162,18 +170,32 @@ void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
     site.hits = found.hits;
     site.assumesHits = found.assumesHits;
     site.assumesMisses = found.assumesMisses;
+    site.mayRunNothing = found.mayRunNothing;
     traces.push_back(std::move(site));
   }
 }
 
 std::size_t PipelineGraph::targetsOf(const spirv::TraceFacts& trace, TargetsOfArguments& known) {
-  const auto [found, isNew] =
-      known.try_emplace({trace.flags, trace.mask, trace.offset, trace.stride, trace.miss}, targets.size());
+  const auto [found, isNew] = known.try_emplace({{trace.flags, trace.mask, trace.offset, trace.stride, trace.miss},
+                                                 trace.part,
+                                                 trace.mayHit,
+                                                 trace.mayMiss,
+                                                 trace.runsAll},
+                                                targets.size());
   if (!isNew && mergesEqual) return found->second;
   TraceTargets& added = targets.emplace_back();
-  addMisses(trace, added);
-  addHits(trace, added);
+  if (trace.mayMiss && trace.part != spirv::TracePart::search) addMisses(trace, added);
+  if (trace.mayHit) addHits(trace, added);
+  if (!trace.runsAll) assume(added);
   return targets.size() - 1;
+}
+
+// Of an execution of a hit object: any of the shaders may run, or none.
+void PipelineGraph::assume(TraceTargets& assumed) const {
+  for (Edge& edge : assumed.edges) edge.exact = false;
+  assumed.assumesHits = !assumed.hits.empty();
+  assumed.assumesMisses = std::ranges::any_of(assumed.edges, [](const Edge& edge) { return edge.role == Role::miss; });
+  assumed.mayRunNothing = true;
 }
 
 void PipelineGraph::addMisses(const spirv::TraceFacts& trace, TraceTargets& added) const {
@@ -201,8 +223,9 @@ void PipelineGraph::addHit(const spirv::TraceFacts& trace, HitGroupRay hit, bool
     return;
   added.hits.push_back(hit);
   const program::HitShaders& files = shaders(hit);
-  if (!trace.flags.mustHave(kFlagSkipClosestHit))
+  if (!trace.flags.mustHave(kFlagSkipClosestHit) && trace.part != spirv::TracePart::search)
     addEdge(added.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
+  if (trace.part == spirv::TracePart::execution) return;  // the search runs the others
   if (!trace.flags.mustHave(kFlagOpaque)) addEdge(added.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
   addEdge(added.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
 }

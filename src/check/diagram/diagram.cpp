@@ -107,7 +107,7 @@ class DiagramBuilder {
   DiagramNode traceNode(const PipelineModel::Trace& trace) const {
     const std::string where = lineText(fileOf(trace.stage), trace.location);
     return {NodeKind::trace,
-            "trace " + where,
+            (trace.executes ? "execution " : "trace ") + where,
             {{"ray", withLoop(rayNames(trace.rays), trace.inLoop)},
              {"flags", trace.flags},
              {"mask", trace.mask},

@@ -59,7 +59,8 @@ struct PipelineModel {
     std::string payload, payloadType;               // names
     std::uint64_t payloadBytes = 0;
     bool inLoop = false;
-    bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags
+    bool executes = false;  // an execution of a hit object: only the shader at the end of the ray
+    bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags or of the part of a trace
     std::vector<Target> targets;
     Indices diagnostics;
   };

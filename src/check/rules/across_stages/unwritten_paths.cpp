@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "spirv/trace_instruction.h"
+
 namespace quintet::check {
 namespace {
 
@@ -188,11 +190,13 @@ class UnwrittenPaths {
     const auto position = module.position(module.definitionIndex(condition));
     if (!position) return {};
     std::set<std::size_t> loads;
-    (void)spirv::dependsOnDataOrControl(module, tracer_.flow(position->function), condition, [&](const auto& i) {
-      if (i.op == Op::OpLoad && module.access(i.at(0)).variable == sent_)
-        loads.insert(module.definitionIndex(i.result));
-      return false;
-    });
+    const bool ofHitObject =
+        spirv::dependsOnDataOrControl(module, tracer_.flow(position->function), condition, [&](const auto& i) {
+          if (i.op == Op::OpLoad && module.access(i.at(0)).variable == sent_)
+            loads.insert(module.definitionIndex(i.result));
+          return spirv::queriesHitObject(module, i);
+        });
+    if (ofHitObject) return {};  // it says whether there is a hit
     std::set<std::uint32_t> leaves;
     const auto& accesses = tracer_.accesses();
     for (std::size_t a = 0; a < accesses.size(); ++a) {
@@ -229,10 +233,12 @@ class UnwrittenPaths {
 
   // Values of gl_HitTEXT: the ends of the interval of the trace, which hits practically never have exactly.
   std::vector<double> hitDistances() const {
-    const spirv::Instruction& call = tracer_.module().instructions()[trace_];
-    const spirv::ValueRange tmin = tracer_.ranges().rangeAt(trace_, call.at(7));
-    const spirv::ValueRange tmax = tracer_.ranges().rangeAt(trace_, call.at(9));
     constexpr float kMost = std::numeric_limits<float>::max();
+    const auto trace = std::ranges::find(tracer_.traces(), trace_, &spirv::TraceFacts::instruction);
+    if (trace == tracer_.traces().end() || trace->ray == spirv::Module::kNone) return {0.0, double{kMost}};
+    const spirv::RayOperands ray = *spirv::rayOperands(tracer_.module().instructions()[trace->ray]);
+    const spirv::ValueRange tmin = tracer_.ranges().rangeAt(trace->ray, ray.tmin);
+    const spirv::ValueRange tmax = tracer_.ranges().rangeAt(trace->ray, ray.tmax);
     const float low = static_cast<float>(std::clamp(tmin.min, 0.0, double{kMost}));
     const float high = static_cast<float>(std::clamp(tmax.max, 0.0, double{kMost}));
     return {std::nextafter(low, kMost), std::nextafter(high, 0.0f)};
