@@ -26,6 +26,16 @@ std::string_view roleName(Role role) {
   return "callable";
 }
 
+// The records that a geometry of an instance uses with the known values of a trace.
+std::set<std::size_t> recordsOfGeometry(const InstanceRecords& instance, std::uint32_t geometry,
+                                        const spirv::TraceFacts& trace) {
+  std::set<std::size_t> records;
+  for (const std::uint32_t offset : trace.offset.values)
+    for (const std::uint32_t stride : trace.stride.values)
+      records.insert(std::size_t{instance.recordOffset} + std::size_t{geometry} * (stride & 0xFu) + (offset & 0xFu));
+  return records;
+}
+
 // The sites of a stage; the list is in the order of the stages.
 template <class Site>
 std::span<const Site> sitesOf(const std::vector<Site>& sites, std::size_t stage) {
@@ -48,9 +58,11 @@ PipelineGraph::PipelineGraph(const program::Program& program, const program::Com
 
 PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> modules, bool merges)
     : groups(std::move(given)), usesLibrary(false), mergesEqual(merges) {
-  context_ = [this](const std::string& file, const program::SceneFacts*, ParameterUse) {
-    return groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file)
-                                                          : spirv::ValueContext{};
+  context_ = [this](const std::string& file, const program::SceneFacts* scene, ParameterUse) {
+    spirv::ValueContext context =
+        groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file) : spirv::ValueContext{};
+    if (scene) addCustomIndices(file, context);
+    return context;
   };
   std::vector<std::string> problems;
   for (const ModuleStage& module : modules) {
@@ -83,6 +95,43 @@ void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(st
   TargetsOfArguments known;
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].facts) addTraces(i, known), addCalls(i);
+}
+
+// Of the instances whose hits run the stage.
+void PipelineGraph::addCustomIndices(const std::string& file, spirv::ValueContext& context) const {
+  if (groups.hitRecords != HitRecords::byRecord || !groups.instances || !groups.tablesKnown || !error.empty() ||
+      !std::ranges::all_of(*groups.instances, &InstanceRecords::hasCustomIndex))
+    return;
+  std::vector<bool> runs;  // by hit group
+  for (const program::HitGroup& group : groups.hitGroups)
+    runs.push_back(std::ranges::any_of(group.shaders, [&](const auto& entry) {
+      const program::HitShaders& shaders = entry.second;
+      return shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file;
+    }));
+  const PipelineStage* found = stage(file);
+  if (!found) return;
+  const auto index = static_cast<std::size_t>(found - stages.data());
+  std::set<double> indices;
+  bool each = found->kind != shader::Stage::anyHit;  // opaque geometry does not run it
+  for (const TraceTargets& selected : targets) {
+    const auto runsIt = [&](const Edge& edge) { return edge.stage == index && edge.role != Role::miss; };
+    if (std::ranges::none_of(selected.edges, runsIt)) continue;
+    const spirv::TraceFacts& trace = *traces[selected.traces.front()].trace;
+    if (selected.mayRunNothing) each = false;
+    if (!trace.offset.certain() || !trace.stride.certain() || !trace.mask.certain()) each = false;
+    for (const InstanceRecords& instance : *groups.instances) {
+      if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
+      for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k) {
+        const bool procedural = groups.geometries[instance.facts.firstGeometry + k].procedural();
+        if (trace.flags.mustHave(procedural ? kFlagSkipAabbs : kFlagSkipTriangles)) continue;
+        const bool used = !trace.offset.known || !trace.stride.known ||
+                          std::ranges::any_of(recordsOfGeometry(instance, k, trace),
+                                              [&](std::size_t record) { return record < runs.size() && runs[record]; });
+        if (used) indices.insert(instance.facts.customIndex);
+      }
+    }
+  }
+  check::addCustomIndices(indices, each, context);
 }
 
 void PipelineGraph::compareRecords() {
@@ -255,9 +304,7 @@ std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) c
   for (const InstanceRecords& instance : *groups.instances) {
     if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
     for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k)
-      for (const std::uint32_t offset : trace.offset.values)
-        for (const std::uint32_t stride : trace.stride.values)
-          records.insert(std::size_t{instance.recordOffset} + std::size_t{k} * (stride & 0xFu) + (offset & 0xFu));
+      records.merge(recordsOfGeometry(instance, k, trace));
   }
   return records;
 }

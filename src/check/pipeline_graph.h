@@ -187,6 +187,7 @@ struct PipelineGraph {
   using TargetsOfArguments = std::map<Selection, std::size_t>;
 
   void compareRecords();
+  void addCustomIndices(const std::string& file, spirv::ValueContext& context) const;
   void assume(TraceTargets& targets) const;
   void addTraces(std::size_t stage, TargetsOfArguments& known);
   void addCalls(std::size_t stage);

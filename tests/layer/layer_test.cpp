@@ -274,6 +274,14 @@ void main() {
          app.recordOffset = 3;
          app.width = 0;
        }},
+      {"CustomIndexBeyondAnArray", "Q711",
+       [](Application& app) {
+         replace(app.shaders.at("a.rchit"), "void main() { payload = Payload(vec3(weights, 0.25), gl_HitTEXT); }",
+                 "const vec3 kTints[2] = vec3[](vec3(0.1), vec3(0.2));\n"
+                 "void main() { payload = Payload(kTints[gl_InstanceCustomIndexEXT], gl_HitTEXT); }");
+         app.customIndex = 2;
+         app.width = 0;
+       }},
       {"TrianglesUseAProceduralGroup", "Q609",
        [](Application& app) {
          useBoxes(app);

@@ -4,12 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "check/modules_test_support.h"
 #include "check/reorder_test_support.h"
+#include "spirv/plain_code.h"
 
 namespace quintet::check {
 namespace {
@@ -276,6 +279,43 @@ TEST(HitObjects, ExecutionsAreRecursion) {
   expectReports(p, {});
   p.groups.declaredRecursion = 1;
   expectReports(p, {"Q402 a.rchit:12"});
+}
+
+// Words that are changed at random, as modules of both extensions: validated, and as they are. QUINTET_CHANGED_MODULES sets their
+// number.
+TEST(HitObjects, ChangedModulesAreSafe) {
+  const char* given = std::getenv("QUINTET_CHANGED_MODULES");
+  const int count = given ? std::atoi(given) : 60;
+  RawPipeline p = plain();
+  addAnyHit(p, "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() { color = vec4(0.5); }\n");
+  const std::vector<ModuleStage> correct = p.modules();
+  const std::string body = std::string(
+                               "hitObjectNV hit, other;\nhitObjectRecordEmptyNV(hit);\n"
+                               "for (int i = 0; i < 3; ++i) {\n") +
+                           kTrace + "if (hitObjectIsHitNV(hit) && i < 2) " + kExecute +
+                           "hitObjectRecordMissNV(other, i, vec3(0), 0.0, vec3(1), 1.0);\nreorderThreadNV(other);\n"
+                           "hitObjectExecuteShaderNV(other, 1);\n}\n" +
+                           kStore;
+  const std::vector<std::uint32_t> words =
+      compileRaw(shader::Stage::rayGeneration, withBody(body).text("a.rgen"), "a.rgen");
+  std::mt19937 generator(7);
+  const auto random = [&](std::size_t limit) { return static_cast<std::uint32_t>(generator() % limit); };
+  for (int k = 0; k < count; ++k) {
+    std::vector<std::uint32_t> changed = k % 2 == 0 ? words : toReorderExt(words, k % 4 == 1);
+    for (std::uint32_t edits = 1 + random(4); edits > 0; --edits) {
+      std::uint32_t& word = changed[5 + random(changed.size() - 5)];
+      switch (random(4)) {
+        case 0: word ^= 1u << random(32); break;
+        case 1: word = changed[random(changed.size())]; break;
+        case 2: word = word >> 16 << 16 | (5249u + random(110)); break;  // another instruction of hit objects
+        default: word += random(3) - 1; break;
+      }
+    }
+    std::vector<ModuleStage> stages = correct;
+    stages[0] = k % 3 == 0 ? stageModule("a.rgen", changed, {spv::ExecutionModel::RayGenerationKHR, "main"}, {})
+                           : ModuleStage{"a.rgen", shader::Stage::rayGeneration, spirv::withPlainCode(changed), {}};
+    for (const Diagnostic& d : checkModules(p.groups, stages, {}).diagnostics) EXPECT_NE(d.text, "");
+  }
 }
 
 }  // namespace
