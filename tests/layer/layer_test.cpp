@@ -463,6 +463,29 @@ TEST_F(LayerHostDriver, FindsTheModulesOfIdentifiers) {
   EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q104"));
 }
 
+TEST_F(LayerHostDriver, FollowsHitObjects) {
+  Application app = application();
+  app.width = 0;
+  std::string& text = app.shaders.at("a.rgen");
+  text.insert(0, "#extension GL_NV_shader_invocation_reorder : require\n");
+  replace(text, "traceRayEXT(tlas,", "hitObjectNV hit;\n  hitObjectTraceRayNV(hit, tlas,");
+  replace(text, "100.0, 0);", "100.0, 0);\n  reorderThreadNV(hit);\n  hitObjectExecuteShaderNV(hit, 0);");
+  RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
+  app.recordOffset = 2;
+  EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q515"));
+  app.recordOffset = 0;
+  Application leaves = app;
+  replace(leaves.shaders.at("a.rmiss"), "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;");
+  result = runApplication(leaves);
+  EXPECT_THAT(idsOf(result), ElementsAre("Q104"));
+  EXPECT_THAT(textsOf(result), HasSubstr("read after this execution of a hit object"));
+  replace(app.shaders.at("a.rmiss"), "vec3 color; float t;", "vec4 color; float t;");
+  replace(app.shaders.at("a.rmiss"), "vec3(0.5)", "vec4(0.5)");
+  EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q101"));
+}
+
 TEST(Layer, AppliesSpecializationConstants) {
   Application app = withLayer();
   replace(app.shaders.at("a.rgen"), "void main() {", "layout(constant_id = 0) const uint kMask = 255u;\nvoid main() {");
