@@ -641,9 +641,12 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
     return head;
   };
   using spv::Op;
+  add(Op::OpCapability, {4479});  // RayTracingKHR
+  add(Op::OpExtension, text("SPV_KHR_ray_tracing"));
+  add(Op::OpExtension, text("SPV_KHR_non_semantic_info"));
   add(Op::OpExtInstImport, with({1}, text("NonSemantic.Shader.DebugInfo.100")));
   add(Op::OpMemoryModel, {0, 1});
-  add(Op::OpEntryPoint, with({5317, 20}, text("main")));
+  add(Op::OpEntryPoint, with(with({5317, 20}, text("main")), {10}));
   add(Op::OpString, with({2}, text("a.hlsl")));
   add(Op::OpString, with({3}, text("float4 color;")));
   add(Op::OpTypeVoid, {4});
@@ -671,6 +674,9 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
     if (i.op != Op::OpStore) continue;
     EXPECT_EQ(locationText(module->location(i).file, module->location(i).line, 0), "a.hlsl:17");
   }
+  // spirv-opt can process it.
+  const ModuleStage stage = stageModule("a.spv", words, {spv::ExecutionModel::MissKHR, "main"}, {});
+  EXPECT_EQ(stage.problem, "");
   const auto direct = spirv::Module::read(words);  // the reader understands both
   ASSERT_TRUE(direct);
   EXPECT_EQ(direct->source("a.hlsl"), "float4 color;");
