@@ -203,9 +203,10 @@ class ModelBuilder {
     trace.stride = valuesText(facts.stride, decimal);
     trace.miss = valuesText(facts.miss, decimal);
     trace.inLoop = facts.inLoop;
+    trace.searches = site.isSearch();
     trace.executes = site.isExecution();
-    trace.skipsClosestHit = site.skipsClosestHit() || site.isSearch();
-    trace.skipsAnyHit = facts.flags.mustHave(kFlagOpaque) || site.isExecution();
+    trace.skipsClosestHit = site.skipsClosestHit();
+    trace.skipsAnyHit = facts.flags.mustHave(kFlagOpaque);
     describeVariable(site.stage, facts.payload, trace.payload, trace.payloadType, trace.payloadBytes);
     for (const HitGroupRay hit : site.hits)
       trace.targets.push_back({Role::closestHit,
@@ -332,6 +333,7 @@ std::string pipelineJson(const PipelineModel& model) {
          {"miss", trace.miss},
          {"payload", {{"name", trace.payload}, {"type", trace.payloadType}, {"bytes", trace.payloadBytes}}},
          {"inLoop", trace.inLoop},
+         {"searches", trace.searches},
          {"executes", trace.executes},
          {"skipsClosestHit", trace.skipsClosestHit},
          {"skipsAnyHit", trace.skipsAnyHit},

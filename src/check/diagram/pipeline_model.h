@@ -59,8 +59,9 @@ struct PipelineModel {
     std::string payload, payloadType;               // names
     std::uint64_t payloadBytes = 0;
     bool inLoop = false;
-    bool executes = false;  // an execution of a hit object: only the shader at the end of the ray
-    bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags or of the part of a trace
+    bool searches = false;  // a trace with a hit object: without the shader at the end of the ray
+    bool executes = false;  // the execution of a hit object: only that shader
+    bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags
     std::vector<Target> targets;
     Indices diagnostics;
   };

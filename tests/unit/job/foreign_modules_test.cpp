@@ -273,6 +273,18 @@ class EnginePipeline {
 
   // "Q104 a.rgen", with its groups or without. `asExt`: hit objects of the EXT extension.
   std::vector<std::string> found(bool described, bool asExt = false) const {
+    std::vector<std::string> result;
+    for (const Diagnostic& d : checked(described, asExt, false).diagnostics())
+      result.push_back(d.id + " " + fs::path(d.file).filename().string());
+    return result;
+  }
+
+  std::string svg() const {
+    return check::svgText(check::diagramOf(checked(true, false, true).programs.at(0).model.value()));
+  }
+
+ private:
+  CheckReport checked(bool described, bool asExt, bool describe) const {
     const TemporaryFolder folder;
     const fs::path groups = fs::path(folder.path()) / "pipeline.json";
     for (const auto& [name, text] : files_) {
@@ -285,14 +297,11 @@ class EnginePipeline {
       writeFile(file.string() + ".spv", std::as_bytes(std::span(words)));
     }
     CheckObserver observer;
-    const ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
-    std::vector<std::string> result;
-    for (const Diagnostic& d : checkModuleFiles(request, observer).diagnostics())
-      result.push_back(d.id + " " + fs::path(d.file).filename().string());
-    return result;
+    ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
+    request.describe = describe;
+    return checkModuleFiles(request, observer);
   }
 
- private:
   std::map<std::string, std::string> files_;
 };
 
@@ -357,6 +366,13 @@ TEST(ForeignModules, AreDescribedOnRequest) {
   EXPECT_THAT(model.traces[0].targets, testing::SizeIs(3));  // both hit groups and a miss shader
   ASSERT_THAT(model.calls, testing::SizeIs(1));
   EXPECT_THAT(check::svgText(check::diagramOf(model)), HasSubstr("balls"));
+}
+
+// A trace with a hit object and its execution are nodes of their own, with the shaders that each runs.
+TEST(ForeignModules, HitObjectsAreDrawn) {
+  const std::string svg = EnginePipeline(kEngines / "reordered_paths").svg();
+  for (const char* text : {"trace paths.rgen", "execution paths.rgen", "not run by this trace"})
+    EXPECT_THAT(svg, HasSubstr(text));
 }
 
 // --watch: a module that is written again, and a new one in the folder.
