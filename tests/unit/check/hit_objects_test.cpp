@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-constexpr const char* kHead = R"(#extension GL_NV_shader_invocation_reorder : require
+constexpr const char* kReorderHead = R"(#extension GL_NV_shader_invocation_reorder : require
 layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
 layout(set = 0, binding = 1, rgba8) uniform image2D result;
 layout(location = 0) rayPayloadEXT vec4 color;
@@ -34,7 +34,7 @@ constexpr const char* kStore = "imageStore(result, ivec2(gl_LaunchIDEXT.xy), col
 // The body of main() starts in line 9.
 RawPipeline withBody(const std::string& body) {
   RawPipeline p = cleanPipeline();
-  p.text("a.rgen") = std::string(kHead) + "void main() {\n" + body + "}\n";
+  p.text("a.rgen") = std::string(kReorderHead) + "void main() {\n" + body + "}\n";
   return p;
 }
 
@@ -268,7 +268,7 @@ TEST(HitObjects, CandidatesAreThoseOfTheTrace) {
 
 // Closest-hit shaders that trace and execute count as recursion; a search alone runs nothing that could.
 TEST(HitObjects, ExecutionsAreRecursion) {
-  const std::string nested = std::string(kHead) +
+  const std::string nested = std::string(kReorderHead) +
                              "layout(location = 2) rayPayloadInEXT vec4 incoming;\nvoid main() {\nhitObjectNV hit;\n" +
                              kTrace + kExecute + "incoming = color;\n}\n";
   RawPipeline p = plain();

@@ -656,6 +656,7 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
   add(Op::OpTypePointer, {8, 5342, 7});
   add(Op::OpConstant, {7, 9, 0});
   add(Op::OpVariable, {8, 10, 5342});
+  add(Op::OpConstant, {5, 14, 8});
   add(Op::OpExtInst, {4, 11, 1, 35, 2, 3});                         // DebugSource
   add(Op::OpExtInst, {4, 12, 1, 18, 2, 4, 11, 6, 6, 4, 2, 10, 6});  // DebugGlobalVariable
   add(Op::OpTypeFunction, {13, 4});
