@@ -42,7 +42,7 @@ class ContentSearch {
         case Op::OpHitObjectRecordHitNV:
         case Op::OpHitObjectRecordHitWithIndexNV: result.hits.push_back(source); break;
         case Op::OpHitObjectRecordMissNV: result.misses.push_back(source); break;
-        default: return result;  // it can be empty, or have any content
+        default: return {};  // it can be empty, or have any content
       }
     }
     // Which of several sources is executed can depend on what the first one found: `if (miss) record a different miss`.

@@ -204,6 +204,10 @@ TEST(HitObjects, UnknownObjectsReachAllShaders) {
                            kTrace + execute);
   p.text("a.rmiss") = kSilentMiss;
   expectReports(p, {});
+  // Also after a trace that skips the closest-hit shader.
+  std::string& flags = p.text("a.rgen");
+  flags.replace(flags.find("gl_RayFlagsNoneEXT"), 18, "gl_RayFlagsSkipClosestHitShaderEXT");
+  expectReports(p, {});
   // In functions that are inlined, it is known.
   p = withBody("run();\n" + std::string(kStore));
   std::string& text = p.text("a.rgen");
