@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "spirv/raw_instructions.h"
+
 namespace quintet::spirv {
 namespace {
 
@@ -224,7 +226,7 @@ class Rewriter {
 
 }  // namespace
 
-bool usesReorderExt(Words words) {
+bool usesReorderExt(std::span<const std::uint32_t> words) {
   for (const RawInstruction& i : RawInstructions(words)) {
     if (i.op == Op::OpCapability && i.at(0) == kCapability) return true;
     if (i.op == Op::OpFunction) return false;
@@ -232,6 +234,6 @@ bool usesReorderExt(Words words) {
   return false;
 }
 
-std::vector<std::uint32_t> withReorderNv(Words words) { return Rewriter(words).run(words); }
+std::vector<std::uint32_t> withReorderNv(std::span<const std::uint32_t> words) { return Rewriter(words).run(words); }
 
 }  // namespace quintet::spirv

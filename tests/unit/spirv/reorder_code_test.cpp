@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <spirv/unified1/spirv.hpp11>
 #include <vector>
 
 #include "spirv/reorder_code.h"
