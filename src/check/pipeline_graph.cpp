@@ -294,8 +294,8 @@ void PipelineGraph::addHitsByRecord(const spirv::TraceFacts& trace, TraceTargets
 
 std::span<const Edge> edgesOf(std::span<const Edge> edges, HitGroupRay hit) {
   const auto first = std::ranges::partition_point(edges, [](const Edge& edge) { return edge.role == Role::miss; });
-  const auto found = std::ranges::equal_range(first, edges.end(), hit, {}, &Edge::hit);
-  return {found.begin(), found.end()};
+  return {std::ranges::lower_bound(first, edges.end(), hit, {}, &Edge::hit),
+          std::ranges::upper_bound(first, edges.end(), hit, {}, &Edge::hit)};
 }
 
 std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) const {

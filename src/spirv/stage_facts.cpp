@@ -86,7 +86,7 @@ ArgumentValues unionOf(const std::vector<ArgumentValues>& all) {
     result.each = result.each && next.each;
   }
   std::ranges::sort(result.values);
-  result.values.erase(std::ranges::unique(result.values).begin(), result.values.end());
+  result.values.erase(std::unique(result.values.begin(), result.values.end()), result.values.end());
   result.min = result.values.front();
   result.each = result.each && result.values.size() == 1;
   return result;

@@ -147,8 +147,9 @@ class EndlessRecursion {
       if (stage == to) return true;
       if (seen[stage]) continue;
       seen[stage] = true;
-      const auto sites = std::ranges::equal_range(sites_, stage, {}, &TraceSite::stage);
-      for (const TraceSite* site : sites) {
+      const auto first = std::ranges::lower_bound(sites_, stage, {}, &TraceSite::stage);
+      for (auto next = first; next != sites_.end() && (*next)->stage == stage; ++next) {
+        const TraceSite* site = *next;
         if (followed[site->targets]) continue;
         followed[site->targets] = true;
         for (const Edge& edge : site->edges)

@@ -25,7 +25,7 @@ struct Store {
 };
 
 // The paths through a shader that do not write the leaf.
-struct Path {
+struct UnwrittenPath {
   std::map<std::uint32_t, Store> stores;  // to other leaves, as far as known
   Blocks branches;                        // that decide whether the shader takes it
 };
@@ -46,7 +46,7 @@ class UnwrittenPaths {
     start_ = entry->blocks[0].first;
     function_ = shader_.module().position(start_)->function;
     writers_ = shader_.writers(received_, leaf_);
-    Path path;
+    UnwrittenPath path;
     if (!addControllers(writers_, path.branches) || !independent(path.branches)) return {};
     findStores();
     for (const auto& [leaf, stores] : stores_)
@@ -89,7 +89,7 @@ class UnwrittenPaths {
   }
 
   // Returns the paths among `path` on which the store is the last one to its leaf; nullopt if there may be none.
-  std::optional<Path> through(const Path& path, std::uint32_t leaf, const Store& store) const {
+  std::optional<UnwrittenPath> through(const UnwrittenPath& path, std::uint32_t leaf, const Store& store) const {
     std::vector<std::size_t> others = shader_.writers(received_, leaf);
     std::erase(others, store.instruction);
     std::vector<std::size_t> kills = others;
@@ -102,7 +102,7 @@ class UnwrittenPaths {
     if (!shader_.pathsAfter(start_).reaches(store.instruction, writers_) ||
         std::ranges::none_of(flow().function().blocks, endsAt))
       return {};
-    Path result = path;
+    UnwrittenPath result = path;
     result.stores[leaf] = store;
     others.push_back(store.instruction);
     if (!addControllers(others, result.branches) || !independent(result.branches)) return {};
@@ -136,13 +136,13 @@ class UnwrittenPaths {
     return true;
   }
 
-  std::vector<std::size_t> readsOn(const Path& path) const {
+  std::vector<std::size_t> readsOn(const UnwrittenPath& path) const {
     return tracer_.unguardedReads(trace_, sent_, leaf_,
                                   [&](const spirv::Guard& guard) { return !holdsOn(path, guard); });
   }
 
   // True if the condition holds on some of the paths.
-  bool holdsOn(const Path& path, const spirv::Guard& guard) const {
+  bool holdsOn(const UnwrittenPath& path, const spirv::Guard& guard) const {
     if (!guard.holds) return false;
     const auto [known, isNew] = leavesOf_.try_emplace(guard.condition);
     if (isNew) known->second = leavesOf(guard.condition);
@@ -171,7 +171,7 @@ class UnwrittenPaths {
   }
 
   // True if the stored values are not all constant, and do not depend on what the branches depend on.
-  bool canVary(const Path& path, const std::set<std::uint32_t>& leaves) const {
+  bool canVary(const UnwrittenPath& path, const std::set<std::uint32_t>& leaves) const {
     std::set<Id> ofBranches;
     for (const std::size_t block : path.branches) ofBranches.merge(sourcesOf(flow().condition(block)));
     bool constant = true;
