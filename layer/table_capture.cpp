@@ -477,7 +477,8 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   for (const check::PipelineGroups& state : states) {
     key += " |";
     for (const check::InstanceRecords& instance : state.instances.value_or(std::vector<check::InstanceRecords>{}))
-      key += fmt::format(" {}:{}:{}", instance.recordOffset, instance.facts.mask, instance.facts.geometryCount);
+      key += fmt::format(" {}:{}:{}:{}", instance.recordOffset, instance.facts.mask, instance.facts.customIndex,
+                         instance.facts.geometryCount);
   }
   {
     const std::scoped_lock lock(mutex_);
@@ -542,6 +543,7 @@ bool TableCapture::addInstances(const Top& top, check::PipelineGroups& groups) {
     instance.facts.geometryCount = range->second.second;
     instance.facts.mask = raw.mask;
     instance.facts.customIndex = raw.instanceCustomIndex;
+    instance.hasCustomIndex = true;
     instance.facts.forceOpaque = (raw.flags & VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR) != 0;
     instance.facts.forceNoOpaque = (raw.flags & VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR) != 0;
     constexpr VkTransformMatrixKHR kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};

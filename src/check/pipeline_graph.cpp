@@ -26,6 +26,16 @@ std::string_view roleName(Role role) {
   return "callable";
 }
 
+// The records that a geometry of an instance uses with the known values of a trace.
+std::set<std::size_t> recordsOfGeometry(const InstanceRecords& instance, std::uint32_t geometry,
+                                        const spirv::TraceFacts& trace) {
+  std::set<std::size_t> records;
+  for (const std::uint32_t offset : trace.offset.values)
+    for (const std::uint32_t stride : trace.stride.values)
+      records.insert(std::size_t{instance.recordOffset} + std::size_t{geometry} * (stride & 0xFu) + (offset & 0xFu));
+  return records;
+}
+
 // The sites of a stage; the list is in the order of the stages.
 template <class Site>
 std::span<const Site> sitesOf(const std::vector<Site>& sites, std::size_t stage) {
@@ -48,9 +58,11 @@ PipelineGraph::PipelineGraph(const program::Program& program, const program::Com
 
 PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> modules, bool merges)
     : groups(std::move(given)), usesLibrary(false), mergesEqual(merges) {
-  context_ = [this](const std::string& file, const program::SceneFacts*, ParameterUse) {
-    return groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file)
-                                                          : spirv::ValueContext{};
+  context_ = [this](const std::string& file, const program::SceneFacts* scene, ParameterUse) {
+    spirv::ValueContext context =
+        groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file) : spirv::ValueContext{};
+    if (scene) addCustomIndices(file, context);
+    return context;
   };
   std::vector<std::string> problems;
   for (const ModuleStage& module : modules) {
@@ -85,6 +97,43 @@ void PipelineGraph::readStages(const std::function<std::vector<std::uint32_t>(st
     if (stages[i].facts) addTraces(i, known), addCalls(i);
 }
 
+// Of the instances whose hits run the stage.
+void PipelineGraph::addCustomIndices(const std::string& file, spirv::ValueContext& context) const {
+  if (groups.hitRecords != HitRecords::byRecord || !groups.instances || !groups.tablesKnown || !error.empty() ||
+      !std::ranges::all_of(*groups.instances, &InstanceRecords::hasCustomIndex))
+    return;
+  std::vector<bool> runs;  // by hit group
+  for (const program::HitGroup& group : groups.hitGroups)
+    runs.push_back(std::ranges::any_of(group.shaders, [&](const auto& entry) {
+      const program::HitShaders& shaders = entry.second;
+      return shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file;
+    }));
+  const PipelineStage* found = stage(file);
+  if (!found) return;
+  const auto index = static_cast<std::size_t>(found - stages.data());
+  std::set<double> indices;
+  bool each = found->kind != shader::Stage::anyHit;  // opaque geometry does not run it
+  for (const TraceTargets& selected : targets) {
+    const auto runsIt = [&](const Edge& edge) { return edge.stage == index && edge.role != Role::miss; };
+    if (std::ranges::none_of(selected.edges, runsIt)) continue;
+    const spirv::TraceFacts& trace = *traces[selected.traces.front()].trace;
+    if (selected.mayRunNothing) each = false;
+    if (!trace.offset.certain() || !trace.stride.certain() || !trace.mask.certain()) each = false;
+    for (const InstanceRecords& instance : *groups.instances) {
+      if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
+      for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k) {
+        const bool procedural = groups.geometries[instance.facts.firstGeometry + k].procedural();
+        if (trace.flags.mustHave(procedural ? kFlagSkipAabbs : kFlagSkipTriangles)) continue;
+        const bool used = !trace.offset.known || !trace.stride.known ||
+                          std::ranges::any_of(recordsOfGeometry(instance, k, trace),
+                                              [&](std::size_t record) { return record < runs.size() && runs[record]; });
+        if (used) indices.insert(instance.facts.customIndex);
+      }
+    }
+  }
+  check::addCustomIndices(indices, each, context);
+}
+
 void PipelineGraph::compareRecords() {
   const spirv::TraceFacts* first = nullptr;
   const auto same = [](const spirv::ArgumentValues& a, const spirv::ArgumentValues& b) {
@@ -93,6 +142,8 @@ void PipelineGraph::compareRecords() {
   for (const PipelineStage& stage : stages) {
     if (!stage.facts) continue;
     for (const spirv::TraceFacts& trace : stage.facts->traces()) {
+      // The search counts.
+      if (trace.part == spirv::TracePart::execution && trace.ray != spirv::Module::kNone) continue;
       if (!first) first = &trace;
       if (first == &trace) continue;
       if (!same(first->offset, trace.offset) || !same(first->stride, trace.stride)) sameHitRecords_ = false;
@@ -111,6 +162,12 @@ const PipelineStage* PipelineGraph::stage(const std::string& file) const {
 }
 
 std::span<const TraceSite> PipelineGraph::tracesOf(std::size_t stage) const { return sitesOf(traces, stage); }
+
+std::optional<spirv::RayOperands> PipelineGraph::ray(const TraceSite& site) const {
+  const std::size_t instruction = site.trace->ray;
+  if (instruction == spirv::Module::kNone) return {};
+  return spirv::rayOperands(facts(site).module().instructions()[instruction]);
+}
 
 std::span<const CallSite> PipelineGraph::callsOf(std::size_t stage) const { return sitesOf(calls, stage); }
 
@@ -150,9 +207,9 @@ void PipelineGraph::addEdge(std::vector<Edge>& edges, const std::string& file, E
 
 void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
   for (const spirv::TraceFacts& trace : stages[stage].facts->traces()) {
-    TraceSite site{stage, &trace, 0, {}, {}, false, false, {}};
+    TraceSite site{stage, &trace, 0, {}, {}, false, false, false, {}};
     if (auto swapped = findSwappedArguments(*stages[stage].facts, trace, rayCount()); !swapped.texts.empty()) {
-      site.swapped = std::move(swapped.texts);
+      if (!site.isExecution()) site.swapped = std::move(swapped.texts);  // the search reports it
       site.trace = &intended_.emplace_back(std::move(swapped.intended));
     }
     site.targets = targetsOf(*site.trace, known);
@@ -162,18 +219,32 @@ void PipelineGraph::addTraces(std::size_t stage, TargetsOfArguments& known) {
     site.hits = found.hits;
     site.assumesHits = found.assumesHits;
     site.assumesMisses = found.assumesMisses;
+    site.mayRunNothing = found.mayRunNothing;
     traces.push_back(std::move(site));
   }
 }
 
 std::size_t PipelineGraph::targetsOf(const spirv::TraceFacts& trace, TargetsOfArguments& known) {
-  const auto [found, isNew] =
-      known.try_emplace({trace.flags, trace.mask, trace.offset, trace.stride, trace.miss}, targets.size());
+  const auto [found, isNew] = known.try_emplace({{trace.flags, trace.mask, trace.offset, trace.stride, trace.miss},
+                                                 trace.part,
+                                                 trace.mayHit,
+                                                 trace.mayMiss,
+                                                 trace.runsAll},
+                                                targets.size());
   if (!isNew && mergesEqual) return found->second;
   TraceTargets& added = targets.emplace_back();
-  addMisses(trace, added);
-  addHits(trace, added);
+  if (trace.mayMiss && trace.part != spirv::TracePart::search) addMisses(trace, added);
+  if (trace.mayHit) addHits(trace, added);
+  if (!trace.runsAll) assume(added);
   return targets.size() - 1;
+}
+
+// Of an execution of a hit object: any of the shaders may run, or none.
+void PipelineGraph::assume(TraceTargets& assumed) const {
+  for (Edge& edge : assumed.edges) edge.exact = false;
+  assumed.assumesHits = !assumed.hits.empty();
+  assumed.assumesMisses = std::ranges::any_of(assumed.edges, [](const Edge& edge) { return edge.role == Role::miss; });
+  assumed.mayRunNothing = true;
 }
 
 void PipelineGraph::addMisses(const spirv::TraceFacts& trace, TraceTargets& added) const {
@@ -201,8 +272,9 @@ void PipelineGraph::addHit(const spirv::TraceFacts& trace, HitGroupRay hit, bool
     return;
   added.hits.push_back(hit);
   const program::HitShaders& files = shaders(hit);
-  if (!trace.flags.mustHave(kFlagSkipClosestHit))
+  if (!trace.flags.mustHave(kFlagSkipClosestHit) && trace.part != spirv::TracePart::search)
     addEdge(added.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
+  if (trace.part == spirv::TracePart::execution) return;  // the search runs the others
   if (!trace.flags.mustHave(kFlagOpaque)) addEdge(added.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
   addEdge(added.edges, files.intersection, {0, Role::intersection, exact, hit, 0});
 }
@@ -222,8 +294,8 @@ void PipelineGraph::addHitsByRecord(const spirv::TraceFacts& trace, TraceTargets
 
 std::span<const Edge> edgesOf(std::span<const Edge> edges, HitGroupRay hit) {
   const auto first = std::ranges::partition_point(edges, [](const Edge& edge) { return edge.role == Role::miss; });
-  const auto found = std::ranges::equal_range(first, edges.end(), hit, {}, &Edge::hit);
-  return {found.begin(), found.end()};
+  return {std::ranges::lower_bound(first, edges.end(), hit, {}, &Edge::hit),
+          std::ranges::upper_bound(first, edges.end(), hit, {}, &Edge::hit)};
 }
 
 std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) const {
@@ -232,9 +304,7 @@ std::set<std::size_t> PipelineGraph::recordsOf(const spirv::TraceFacts& trace) c
   for (const InstanceRecords& instance : *groups.instances) {
     if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
     for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k)
-      for (const std::uint32_t offset : trace.offset.values)
-        for (const std::uint32_t stride : trace.stride.values)
-          records.insert(std::size_t{instance.recordOffset} + std::size_t{k} * (stride & 0xFu) + (offset & 0xFu));
+      records.merge(recordsOfGeometry(instance, k, trace));
   }
   return records;
 }

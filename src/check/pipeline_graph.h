@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -23,6 +24,7 @@
 #include "program/compile.h"
 #include "program/hit_group_binding.h"
 #include "spirv/stage_facts.h"
+#include "spirv/trace_instruction.h"
 
 namespace quintet::check {
 
@@ -74,8 +76,10 @@ struct TraceTargets {
   std::vector<HitGroupRay> hits;    // that a hit can use, in their order
   std::vector<std::size_t> traces;  // in PipelineGraph::traces, in their order
   // One of the hit groups or miss shaders runs, or a record without shaders, but it is unknown which one: the layout of the
-  // table is unknown.
+  // table is unknown, or conditions select which hit objects are executed.
   bool assumesHits = false, assumesMisses = false;
+  // It may also be that none of them runs: a hit object that can be empty.
+  bool mayRunNothing = false;
 };
 
 // The edges to the shaders of a hit group. `edges` is in the order of TraceTargets.
@@ -88,8 +92,12 @@ struct TraceSite {
   std::span<const Edge> edges;               // as the targets have them
   std::span<const HitGroupRay> hits;
   bool assumesHits = false, assumesMisses = false;
+  bool mayRunNothing = false;
   std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
+  bool isSearch() const { return trace->part == spirv::TracePart::search; }
+  bool isExecution() const { return trace->part == spirv::TracePart::execution; }
+  std::string_view noun() const { return isExecution() ? "execution of a hit object" : "trace"; }  // of messages
 };
 
 struct CallSite {
@@ -120,6 +128,9 @@ struct PipelineGraph {
   const spirv::StageFacts& facts(const TraceSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const CallSite& site) const { return *stages[site.stage].facts; }
   const spirv::StageFacts& facts(const Edge& edge) const { return *stages[edge.stage].facts; }
+  // The arguments of the ray of a trace; of an execution of a hit object, those of the trace that filled it. Nullopt if these
+  // are not known.
+  std::optional<spirv::RayOperands> ray(const TraceSite& site) const;
   const program::HitShaders& shaders(HitGroupRay hit) const;  // empty if the group has none for that ray type
   bool hasIntersection(std::size_t group) const;
   // What is known about the values of a stage. A null `scene` stands for any scene.
@@ -166,10 +177,18 @@ struct PipelineGraph {
 
   // Reads module i, which `words` returns, if it is not empty.
   void readStages(const std::function<std::vector<std::uint32_t>(std::size_t)>& words, std::vector<std::string> errors);
-  // The targets by the arguments that select them: flags, mask, offset, stride, miss index.
-  using TargetsOfArguments = std::map<std::array<spirv::ArgumentValues, 5>, std::size_t>;
+  // The targets by what selects them: flags, mask, offset, stride, miss index; for parts of traces also what they run.
+  struct Selection {
+    std::array<spirv::ArgumentValues, 5> arguments;
+    spirv::TracePart part = spirv::TracePart::whole;
+    bool mayHit = true, mayMiss = true, runsAll = true;
+    auto operator<=>(const Selection&) const = default;
+  };
+  using TargetsOfArguments = std::map<Selection, std::size_t>;
 
   void compareRecords();
+  void addCustomIndices(const std::string& file, spirv::ValueContext& context) const;
+  void assume(TraceTargets& targets) const;
   void addTraces(std::size_t stage, TargetsOfArguments& known);
   void addCalls(std::size_t stage);
   std::size_t targetsOf(const spirv::TraceFacts& trace, TargetsOfArguments& known);

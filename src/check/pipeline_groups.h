@@ -26,6 +26,7 @@ enum class HitRecords {
 struct InstanceRecords {
   program::InstanceFacts facts;    // its geometries are a range of PipelineGroups::geometries
   std::uint32_t recordOffset = 0;  // instanceShaderBindingTableRecordOffset
+  bool hasCustomIndex = false;     // facts.customIndex is known
 };
 
 struct PipelineGroups {

@@ -5,10 +5,12 @@
 
 #include <spirv/unified1/GLSL.std.450.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "spirv/source_text.h"
+#include "spirv/trace_instruction.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -84,8 +86,13 @@ bool isConstantNotUnit(const spirv::StageFacts& facts, spirv::Id value) {
   return square > 0.0 && std::abs(std::sqrt(square) - 1.0) > 0.01;
 }
 
+std::string_view functionOf(const spirv::TraceFacts& trace) {
+  return trace.part == spirv::TracePart::whole ? "traceRayEXT" : "the trace";
+}
+
 std::string flagsAndMask(const spirv::TraceFacts& trace, const std::vector<std::string>& arguments) {
-  std::string text = "ray flags and cull mask of this trace are swapped: traceRayEXT expects the flags first";
+  std::string text =
+      fmt::format("ray flags and cull mask of this trace are swapped: {} expects the flags first", functionOf(trace));
   if (trace.flags.exact() && trace.mask.exact())
     text +=
         fmt::format(", but the flags are {:#x} and the mask is {:#04x}", trace.flags.values[0], trace.mask.values[0]);
@@ -136,10 +143,17 @@ std::vector<std::string> callArguments(std::string_view text, int line, int colu
 SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spirv::TraceFacts& trace,
                                       std::size_t rayCount) {
   SwappedArguments result{{}, trace};
+  const auto source = std::ranges::find(facts.traces(), trace.ray, &spirv::TraceFacts::instruction);
+  if (trace.ray == spirv::Module::kNone || source == facts.traces().end()) return result;
   const spirv::Module& module = facts.module();
+  const spirv::Instruction& call = module.instructions()[source->instruction];
+  const std::optional<spirv::RayOperands> ray = spirv::rayOperands(call);
   std::vector<std::string> arguments =
-      callArguments(module.source(trace.location.file), trace.location.line, trace.location.column);
-  if (arguments.size() != 11) arguments.clear();
+      callArguments(module.source(source->location.file), source->location.line, source->location.column);
+  constexpr std::size_t kArguments = 11;
+  if (source->part == spirv::TracePart::search && arguments.size() > kArguments)  // the hit object, hints at the end
+    arguments.erase(arguments.begin()), arguments.resize(kArguments);
+  if (arguments.size() != kArguments || !ray) arguments.clear();
   const bool named = !arguments.empty();
 
   constexpr std::string_view kFlag = "gl_RayFlags";
@@ -148,7 +162,7 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
                        !contradicts(trace.mask.values[0]);
   const bool byName = maskNamed && !flagsNamed && trace.flags.exact() && trace.flags.values[0] != 0;
   if (byValue || byName) {
-    result.texts.push_back(flagsAndMask(trace, arguments));
+    result.texts.push_back(flagsAndMask(*source, arguments));
     std::swap(result.intended.flags, result.intended.mask);
   }
 
@@ -158,7 +172,8 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
   const bool valueOrder = records && rayCount > 1 && trace.offset.values[0] == rayCount &&
                           trace.stride.values[0] < rayCount && trace.stride.values[0] != 0;
   if (nameOrder || valueOrder) {
-    std::string text = "offset and stride of this trace are swapped: traceRayEXT expects the offset first";
+    std::string text =
+        fmt::format("offset and stride of this trace are swapped: {} expects the offset first", functionOf(*source));
     if (records)
       text +=
           fmt::format(", but the offset is {} and the stride is {}", trace.offset.values[0], trace.stride.values[0]);
@@ -166,9 +181,8 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
     std::swap(result.intended.offset, result.intended.stride);
   }
 
-  const spirv::Instruction& call = module.instructions()[trace.instruction];
-  if ((isPosition(module, call.at(8)) && isDirection(module, call.at(6))) ||
-      (isCameraDirection(facts, call.at(6)) && isConstantNotUnit(facts, call.at(8))))
+  if (ray && ((isPosition(module, ray->direction) && isDirection(module, ray->origin)) ||
+              (isCameraDirection(facts, ray->origin) && isConstantNotUnit(facts, ray->direction))))
     result.texts.push_back(
         "origin and direction of this trace are swapped: the origin is a unit vector, and the direction is a position");
   return result;

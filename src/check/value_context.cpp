@@ -162,6 +162,13 @@ spirv::ValueContext groupContext(const std::vector<program::HitGroup>& hitGroups
   return context;
 }
 
+void addCustomIndices(const std::set<double>& indices, bool each, spirv::ValueContext& context) {
+  if (indices.empty()) return;
+  ValueRange range = amongAll(indices);
+  if (!each) range.occurrence = Occurrence::unknown;
+  context.builtIns[spv::BuiltIn::InstanceCustomIndexKHR] = range;
+}
+
 DefaultRanges::DefaultRanges(spirv::ValueContext context, const spirv::Module& module)
     : module_(module), ranges_(module, std::move(context)) {}
 

@@ -5,6 +5,7 @@
 #define QUINTET_CHECK_VALUE_CONTEXT_H
 
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ spirv::ValueContext valueContext(const program::Program& program, const std::str
 
 // What the hit groups that use a stage say about its values: hit kinds, barycentrics.
 spirv::ValueContext groupContext(const std::vector<program::HitGroup>& hitGroups, const std::string& file);
+
+// The numbers of the instances whose hits a stage gets. `each`: each of them occurs.
+void addCustomIndices(const std::set<double>& indices, bool each, spirv::ValueContext& context);
 
 // Ranges in a stage if all parameters have their defaults.
 class DefaultRanges {

@@ -696,6 +696,20 @@ SourceLocation Module::declaration(Id id) const {
   return idLocation(id);
 }
 
+namespace {
+
+// The name of an instruction that runs shaders, without the extension of hit objects, and the operand with the payload or data.
+std::pair<std::string_view, std::size_t> nameAndData(spv::Op op) {
+  switch (op) {
+    case spv::Op::OpTraceRayKHR: return {"OpTraceRayKHR", 10};
+    case spv::Op::OpHitObjectTraceRayNV: return {"OpHitObjectTraceRay", 11};
+    case spv::Op::OpHitObjectExecuteShaderNV: return {"OpHitObjectExecuteShader", 1};
+    default: return {"OpExecuteCallableKHR", 1};
+  }
+}
+
+}  // namespace
+
 SourceLocation Module::idLocation(Id id) const {
   if (file_.empty()) return {};
   const std::string named = name(id);
@@ -712,15 +726,17 @@ SourceLocation Module::idLocation(const Instruction& instruction) const {
   };
   switch (instruction.op) {
     case Op::OpTraceRayKHR:
+    case Op::OpHitObjectTraceRayNV:
+    case Op::OpHitObjectExecuteShaderNV:
     case Op::OpExecuteCallableKHR: {
-      const bool trace = instruction.op == Op::OpTraceRayKHR;
       std::size_t number = 0;
       for (const Instruction& other : instructions_) {
         number += other.op == instruction.op ? 1 : 0;
         if (&other == &instruction) break;
       }
-      SourceLocation result = idLocation(pointer(trace ? 10 : 1));
-      result.file += fmt::format(", {} {}", trace ? "OpTraceRayKHR number" : "OpExecuteCallableKHR number", number);
+      const auto [name, data] = nameAndData(instruction.op);
+      SourceLocation result = idLocation(pointer(data));
+      result.file += fmt::format(", {} number {}", name, number);
       return result;
     }
     case Op::OpStore: return idLocation(pointer(0));

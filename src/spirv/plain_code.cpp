@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "spirv/raw_instructions.h"
+#include "spirv/reorder_code.h"
 #include "spirv/type.h"
 
 namespace quintet::spirv {
@@ -114,8 +115,9 @@ class MemoryCopies {
 
 }  // namespace
 
-std::vector<std::uint32_t> withPlainCode(std::span<const std::uint32_t> words) {
+std::vector<std::uint32_t> withPlainCode(std::span<const std::uint32_t> given) {
   constexpr auto kDontInline = static_cast<std::uint32_t>(spv::FunctionControlMask::DontInline);
+  const std::vector<std::uint32_t> words = withReorderNv(given);
   std::vector<std::uint32_t> result = headerOf(words);
   const DecorationGroups groups(words);
   MemoryCopies copies;
@@ -191,9 +193,6 @@ std::string_view otherTrace(const Module& module) {
   using spv::Op;
   for (const Instruction& i : module.instructions()) {
     switch (i.op) {
-      case Op::OpHitObjectTraceRayNV: return "OpHitObjectTraceRayNV";
-      case Op::OpHitObjectTraceRayMotionNV: return "OpHitObjectTraceRayMotionNV";
-      case Op::OpHitObjectExecuteShaderNV: return "OpHitObjectExecuteShaderNV";
       case Op::OpTraceRayMotionNV: return "OpTraceRayMotionNV";
       case Op::OpTraceNV: return "OpTraceNV";
       case Op::OpTraceMotionNV: return "OpTraceMotionNV";

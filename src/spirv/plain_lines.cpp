@@ -133,6 +133,8 @@ class Converter {
   }
 
   void convert(Op op, Words operands, Words instruction) {
+    // While the set is imported, spirv-opt writes OpNoLine as one of its instructions, also where these are not allowed.
+    if (op == Op::OpExtInstImport && sets_.contains(at(operands, 0))) return;
     if (!isBeforeNames(op)) addSources();
     if (isDebugInfo(op, operands)) {
       if (operands[3] == NonSemanticShaderDebugInfo100DebugLine) {

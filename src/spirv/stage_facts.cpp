@@ -6,6 +6,8 @@
 #include <unordered_set>
 
 #include "spirv/glsl_declaration.h"
+#include "spirv/hit_objects.h"
+#include "spirv/trace_instruction.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::spirv {
@@ -74,10 +76,31 @@ std::vector<std::uint32_t> shuffledFrom(const Module& module, const Instruction&
   return result;
 }
 
+// The values of any of the arguments; nothing is known without any.
+ArgumentValues unionOf(const std::vector<ArgumentValues>& all) {
+  if (all.empty() || !std::ranges::all_of(all, &ArgumentValues::known)) return {};
+  ArgumentValues result = all.front();
+  for (const ArgumentValues& next : all) {
+    result.values.insert(result.values.end(), next.values.begin(), next.values.end());
+    result.ones &= next.ones, result.zeros &= next.zeros;
+    result.each = result.each && next.each;
+  }
+  std::ranges::sort(result.values);
+  result.values.erase(std::unique(result.values.begin(), result.values.end()), result.values.end());
+  result.min = result.values.front();
+  result.each = result.each && result.values.size() == 1;
+  return result;
+}
+
 bool hasEffect(Op op) {
   switch (op) {
     case Op::OpStore:
     case Op::OpTraceRayKHR:
+    case Op::OpHitObjectTraceRayNV:
+    case Op::OpHitObjectExecuteShaderNV:
+    case Op::OpHitObjectRecordHitNV:
+    case Op::OpHitObjectRecordHitWithIndexNV:
+    case Op::OpHitObjectRecordMissNV:
     case Op::OpExecuteCallableKHR:
     case Op::OpReportIntersectionKHR:
     case Op::OpFunctionCall:
@@ -136,6 +159,7 @@ StageFacts::StageFacts(Module module, ValueContext context)
   for (std::size_t i = 0; i < module_.instructions().size(); ++i)
     if (const auto position = module_.position(i); position && flows_[position->function].reachable(position->block))
       readInstruction(i);
+  findExecuted();
   for (BuiltInRead& read : builtIns_)
     read.afterTrace = std::ranges::any_of(
         traces_, [&](const TraceFacts& trace) { return canRunAfter(module_, read.instruction, trace.instruction); });
@@ -172,11 +196,8 @@ void StageFacts::readInstruction(std::size_t index) {
   const Instruction& i = module_.instructions()[index];
   switch (i.op) {
     case Op::OpTraceRayKHR:
-      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable,
-                         values(index, i.at(1)), values(index, i.at(2)), values(index, i.at(3)), values(index, i.at(4)),
-                         values(index, i.at(5)),
-                         flows_[module_.position(index)->function].inLoop(module_.position(index)->block)});
-      return;
+    case Op::OpHitObjectTraceRayNV:
+    case Op::OpHitObjectExecuteShaderNV: return addTrace(index);
     case Op::OpExecuteCallableKHR:
       calls_.push_back(
           {index, module_.location(i, "executeCallableEXT"), module_.access(i.at(1)).variable, values(index, i.at(0))});
@@ -196,6 +217,81 @@ void StageFacts::readInstruction(std::size_t index) {
         if (module_.types().get(module_.definition(id) ? module_.definition(id)->type : 0).kind == Type::Kind::pointer)
           addAccess(index, id, true, true);
   }
+}
+
+void StageFacts::addTrace(std::size_t index) {
+  const Instruction& i = module_.instructions()[index];
+  const Module::Position position = *module_.position(index);
+  TraceFacts trace;
+  trace.instruction = index;
+  trace.location = traceLocation(module_, i);
+  trace.inLoop = flows_[position.function].inLoop(position.block);
+  if (const auto ray = rayOperands(i)) {
+    trace.part = i.op == Op::OpTraceRayKHR ? TracePart::whole : TracePart::search;
+    trace.payload = module_.access(ray->payload).variable;
+    trace.flags = values(index, ray->flags);
+    trace.mask = values(index, ray->mask);
+    trace.offset = values(index, ray->offset);
+    trace.stride = values(index, ray->stride);
+    trace.miss = values(index, ray->miss);
+    trace.ray = index;
+    trace.missRuns = trace.part == TracePart::whole;
+  } else {
+    trace.part = TracePart::execution;
+    trace.payload = module_.access(i.at(1)).variable;
+  }
+  if (trace.part != TracePart::whole) hitObjects_[trace.payload].push_back(module_.access(i.at(0)).variable);
+  traces_.push_back(std::move(trace));
+}
+
+const TraceFacts* StageFacts::traceAt(std::size_t instruction) const {
+  const auto found = std::ranges::lower_bound(traces_, instruction, {}, &TraceFacts::instruction);
+  return found != traces_.end() && found->instruction == instruction ? &*found : nullptr;
+}
+
+// Connects the executions of hit objects with the searches that filled them.
+void StageFacts::findExecuted() {
+  for (TraceFacts& trace : traces_)
+    if (trace.part == TracePart::execution) describeExecution(trace);
+}
+
+void StageFacts::describeExecution(TraceFacts& execution) {
+  const HitObjectContent content = contentAt(module_, flows_, execution.instruction);
+  const bool anything = content.traces.empty() && content.hits.empty() && content.misses.empty();
+  for (TraceFacts& trace : traces_)
+    if (content.known && content.mayBeMiss && std::ranges::count(content.traces, trace.instruction) > 0)
+      trace.missRuns = true;
+  execution.mayHit = content.mayBeHit;
+  execution.mayMiss = content.mayBeMiss;
+  execution.runsAll = content.known;
+  std::vector<const TraceFacts*> traces;
+  for (const std::size_t trace : content.traces) traces.push_back(traceAt(trace));
+  if (anything || std::ranges::count(traces, nullptr) > 0) return;
+  if (traces.size() == 1 && content.hits.empty() && content.misses.empty()) {
+    execution.ray = traces[0]->instruction;
+    execution.flags = traces[0]->flags, execution.mask = traces[0]->mask;
+    execution.offset = traces[0]->offset, execution.stride = traces[0]->stride;
+    execution.miss = traces[0]->miss;
+    return;
+  }
+  std::vector<ArgumentValues> flags, offsets, strides, misses;
+  for (const TraceFacts* trace : traces) {
+    flags.push_back(trace->flags);
+    offsets.push_back(trace->offset), strides.push_back(trace->stride);
+    misses.push_back(trace->miss);
+  }
+  for (const std::size_t hit : content.hits) {
+    const Instruction& record = module_.instructions()[hit];
+    const bool byInstance = record.op == Op::OpHitObjectRecordHitNV;
+    flags.emplace_back();
+    offsets.push_back(byInstance ? values(hit, record.at(6)) : ArgumentValues{});
+    strides.push_back(byInstance ? values(hit, record.at(7)) : ArgumentValues{});
+  }
+  for (const std::size_t miss : content.misses) misses.push_back(values(miss, module_.instructions()[miss].at(1)));
+  execution.flags = unionOf(flags);
+  execution.offset = unionOf(offsets);
+  execution.stride = unionOf(strides);
+  execution.miss = unionOf(misses);
 }
 
 void StageFacts::addAccess(std::size_t index, Id pointer, bool reads, bool writes) {
@@ -494,7 +590,10 @@ bool StageFacts::writesAlways(Id variable, std::uint32_t leaf) const {
 
 bool StageFacts::writtenBefore(Id variable, std::uint32_t leaf, std::size_t instruction) const {
   Indices marks = writers(variable, leaf);
-  std::erase(marks, instruction);
+  std::erase_if(marks, [&](std::size_t mark) {
+    const TraceFacts* trace = traceAt(mark);
+    return mark == instruction || (trace && trace->part == TracePart::search);
+  });
   return !marks.empty() && runsAlwaysBefore(std::move(marks), instruction);
 }
 
@@ -534,13 +633,32 @@ Indices StageFacts::unguardedReads(std::size_t site, Id variable, std::uint32_t 
   return result;
 }
 
+// True if the instruction asks about a hit object that is traced or executed with the variable.
+bool StageFacts::queriesObjectOf(const Instruction& query, Id variable) const {
+  const auto objects = hitObjects_.find(variable);
+  if (objects == hitObjects_.end() || !queriesHitObject(module_, query)) return false;
+  // The attributes can be those of any object.
+  const Id object = query.op == Op::OpLoad ? 0 : module_.access(query.at(0)).variable;
+  return object == 0 || std::ranges::count(objects->second, object) > 0 || std::ranges::count(objects->second, 0u) > 0;
+}
+
+// True if a branch with the condition can run on the paths. One that runs before and depends only on hit objects has decided about
+// the start of the paths, not about what is read.
+bool StageFacts::branchesAfter(const PathsAfter& paths, Id condition, Id variable) const {
+  if (!hitObjects_.contains(variable)) return true;
+  return std::ranges::any_of(module_.users(condition), [&](std::size_t user) {
+    const Op op = module_.instructions()[user].op;
+    return (op == Op::OpBranchConditional || op == Op::OpSwitch) && paths.reaches(user, {});
+  });
+}
+
 bool StageFacts::dependsOnVariable(Id value, Id variable) const {
   const auto [found, isNew] = dependsOnVariable_.try_emplace({value, variable}, false);
   if (!isNew) return found->second;
   const auto position = module_.position(module_.definitionIndex(value));
   if (!position) return false;  // a constant
   const auto loads = [&](const Instruction& i) {
-    return i.op == Op::OpLoad && module_.access(i.at(0)).variable == variable;
+    return (i.op == Op::OpLoad && module_.access(i.at(0)).variable == variable) || queriesObjectOf(i, variable);
   };
   found->second = dependsOnDataOrControl(module_, flows_[position->function], value, loads);
   return found->second;
@@ -618,7 +736,11 @@ bool StageFacts::choosesByVariable(const PathsAfter& paths, const Instruction& u
     choices = {use.at(1), use.at(2)};
     conditions = {use.at(0)};
   }
-  if (std::ranges::none_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); })) return false;
+  const auto decides = [&](Id condition) {
+    return dependsOnVariable(condition, read.variable) &&
+           (use.op != Op::OpPhi || branchesAfter(paths, condition, read.variable));
+  };
+  if (std::ranges::none_of(conditions, decides)) return false;
   const bool hasAlternative =
       std::ranges::any_of(choices, [&](Id id) { return id != use.result && !dependsOnLeaf(id, read.variable, leaf); });
   if (!hasAlternative) return false;

@@ -8,6 +8,7 @@
 #define QUINTET_SPIRV_STAGE_FACTS_H
 
 #include <compare>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <unordered_map>
@@ -38,13 +39,26 @@ struct ArgumentValues {
   auto operator<=>(const ArgumentValues&) const = default;
 };
 
-// A traceRayEXT.
+// What a trace does. Hit objects (trace_instruction.h) separate the search for the hit from the shader at its end.
+enum class TracePart : std::uint8_t {
+  whole,     // traceRayEXT
+  search,    // hitObjectTraceRay: only intersection and any-hit shaders run
+  execution  // hitObjectExecuteShader: only the closest-hit or miss shader runs
+};
+
+// A trace of a ray, or a part of it.
 struct TraceFacts {
   std::size_t instruction = 0;
   SourceLocation location;
-  Id payload = 0;  // the variable
-  ArgumentValues flags, mask, offset, stride, miss;
+  Id payload = 0;                                    // the variable
+  ArgumentValues flags, mask, offset, stride, miss;  // of an execution: those of what filled the hit object
   bool inLoop = false;
+  TracePart part = TracePart::whole;
+  std::size_t ray = Module::kNone;     // the instruction with the arguments of the ray; kNone if it is not known
+  bool mayHit = true, mayMiss = true;  // an execution: whether the hit object can be one
+  // An execution: each hit or miss that may be executed is. False if which ones are is unknown; it can be none.
+  bool runsAll = true;
+  bool missRuns = true;  // a search: whether its miss is certainly executed
 };
 
 // An executeCallableEXT.
@@ -135,7 +149,7 @@ class StageFacts {
   // whose condition cannot be evaluated for the first iteration of a loop.
   std::vector<std::size_t> inputReads(Id variable, std::uint32_t leaf) const;
   // True if the leaf is written on each path from the stage's start to the instruction. Another trace or call with the
-  // variable counts as a write.
+  // variable counts as a write, except a search, in which only any-hit shaders write.
   bool writtenBefore(Id variable, std::uint32_t leaf, std::size_t instruction) const;
   // Instructions that write the leaf, including traces and calls with the variable.
   std::vector<std::size_t> writers(Id variable, std::uint32_t leaf) const;
@@ -143,14 +157,15 @@ class StageFacts {
   ValuePart storedValue(const AccessFacts& write, std::uint32_t leaf) const;
 
   // Indices into accesses() of the reads of a leaf that see the result of a trace or call with the variable on a path
-  // that no condition on the variable guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`. With a
-  // test, conditions for which it fails do not guard.
+  // that no condition on the variable guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`. Conditions on
+  // hit objects guard, too. With a test, conditions for which it fails do not guard.
   std::vector<std::size_t> unguardedReads(std::size_t site, Id variable, std::uint32_t leaf,
                                           const GuardTest& test = {}) const;
   // The same with guarded reads.
   std::vector<std::size_t> readsAfter(std::size_t site, Id variable, std::uint32_t leaf) const;
   const PathsAfter& pathsAfter(std::size_t instruction) const;  // of an instruction inside a function; cached
-  // True if the value depends on a load of the variable, through data or control.
+  // True if the value depends on a load of the variable, or on a hit object that is traced or executed with it, through data or
+  // control.
   bool dependsOnVariable(Id value, Id variable) const;
   // True if the value depends on a read of the leaf.
   bool dependsOnLeaf(Id value, Id variable, std::uint32_t leaf) const;
@@ -160,6 +175,10 @@ class StageFacts {
 
  private:
   void readInstruction(std::size_t index);
+  void addTrace(std::size_t index);
+  void findExecuted();
+  void describeExecution(TraceFacts& execution);
+  const TraceFacts* traceAt(std::size_t instruction) const;
   void addAccess(std::size_t index, Id pointer, bool reads, bool writes);
   void addLoad(std::size_t index, Id variable, const Path& path, Id value);
   void addStore(std::size_t index, Id variable, const Access& target, LeafRange range, Id value);
@@ -174,6 +193,8 @@ class StageFacts {
   bool arrivesGuarded(const PathsAfter& paths, const Instruction& phi, Id value, Id variable,
                       const GuardTest& test) const;
   bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf, const GuardTest& test) const;
+  bool queriesObjectOf(const Instruction& query, Id variable) const;
+  bool branchesAfter(const PathsAfter& paths, Id condition, Id variable) const;
   bool choosesByVariable(const PathsAfter& paths, const Instruction& use, Id value, const AccessFacts& read,
                          std::uint32_t leaf, const GuardTest& test) const;
   bool isOwnAccess(const Instruction& use, Id value, const AccessFacts& read) const;
@@ -192,6 +213,7 @@ class StageFacts {
   std::map<Id, Leaves> leaves_;                                        // by variable
   std::vector<std::pair<std::size_t, std::size_t>> loops_;             // header and merge block, of the entry function
   mutable std::map<std::pair<Id, Id>, bool> dependsOnVariable_;        // cache, by value and variable
+  std::map<Id, std::vector<Id>> hitObjects_;                           // by payload
   mutable std::map<std::size_t, std::unique_ptr<PathsAfter>> paths_;   // cache, by instruction
   mutable std::map<std::pair<Id, std::uint32_t>, bool> writesAlways_;  // cache, by variable and leaf
   mutable std::map<std::pair<Id, std::uint32_t>, bool> readsBeforeWriting_;

@@ -329,6 +329,7 @@ class Vulkan {
     instance.transform = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     instance.mask = 0xFF;
     instance.instanceShaderBindingTableRecordOffset = app_.recordOffset & 0xFFFFFFu;
+    instance.instanceCustomIndex = app_.customIndex & 0xFFFFFFu;
     instance.accelerationStructureReference = deviceFunction<PFN_vkGetAccelerationStructureDeviceAddressKHR>(
         "vkGetAccelerationStructureDeviceAddressKHR")(device_, &address);
     if (app_.hostBuilds) instance.accelerationStructureReference = reinterpret_cast<std::uint64_t>(bottom_);

@@ -46,6 +46,7 @@ struct Application {
   bool opaque = false;             // VK_GEOMETRY_OPAQUE_BIT_KHR
   bool hostBuilds = false;         // vkBuildAccelerationStructuresKHR, with the layer of host_driver.cpp and width 0
   std::uint32_t recordOffset = 0;  // of the instance
+  std::uint32_t customIndex = 0;   // of the instance
   std::optional<std::uint32_t> stack;  // vkCmdSetRayTracingPipelineStackSizeKHR
 
   // Shader binding table. Each region starts at a multiple of 256 bytes.

@@ -276,6 +276,14 @@ void main() {
          app.recordOffset = 3;
          app.width = 0;
        }},
+      {"CustomIndexBeyondAnArray", "Q711",
+       [](Application& app) {
+         replace(app.shaders.at("a.rchit"), "void main() { payload = Payload(vec3(weights, 0.25), gl_HitTEXT); }",
+                 "const vec3 kTints[2] = vec3[](vec3(0.1), vec3(0.2));\n"
+                 "void main() { payload = Payload(kTints[gl_InstanceCustomIndexEXT], gl_HitTEXT); }");
+         app.customIndex = 2;
+         app.width = 0;
+       }},
       {"TrianglesUseAProceduralGroup", "Q609",
        [](Application& app) {
          useBoxes(app);
@@ -455,6 +463,29 @@ TEST_F(LayerHostDriver, FindsTheModulesOfIdentifiers) {
   EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
   replace(app.shaders.at("a.rmiss"), "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;");
   EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q104"));
+}
+
+TEST_F(LayerHostDriver, FollowsHitObjects) {
+  Application app = application();
+  app.width = 0;
+  std::string& text = app.shaders.at("a.rgen");
+  text.insert(0, "#extension GL_NV_shader_invocation_reorder : require\n");
+  replace(text, "traceRayEXT(tlas,", "hitObjectNV hit;\n  hitObjectTraceRayNV(hit, tlas,");
+  replace(text, "100.0, 0);", "100.0, 0);\n  reorderThreadNV(hit);\n  hitObjectExecuteShaderNV(hit, 0);");
+  RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result);
+  app.recordOffset = 2;
+  EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q515"));
+  app.recordOffset = 0;
+  Application leaves = app;
+  replace(leaves.shaders.at("a.rmiss"), "payload = Payload(vec3(0.5), -1.0);", "payload.t = -1.0;");
+  result = runApplication(leaves);
+  EXPECT_THAT(idsOf(result), ElementsAre("Q104"));
+  EXPECT_THAT(textsOf(result), HasSubstr("read after this execution of a hit object"));
+  replace(app.shaders.at("a.rmiss"), "vec3 color; float t;", "vec4 color; float t;");
+  replace(app.shaders.at("a.rmiss"), "vec3(0.5)", "vec4(0.5)");
+  EXPECT_THAT(idsOf(runApplication(app)), ElementsAre("Q101"));
 }
 
 TEST(Layer, AppliesSpecializationConstants) {

@@ -5,6 +5,7 @@
 #include <compare>
 #include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -107,7 +108,7 @@ class DiagramBuilder {
   DiagramNode traceNode(const PipelineModel::Trace& trace) const {
     const std::string where = lineText(fileOf(trace.stage), trace.location);
     return {NodeKind::trace,
-            "trace " + where,
+            (trace.executes ? "execution " : "trace ") + where,
             {{"ray", withLoop(rayNames(trace.rays), trace.inLoop)},
              {"flags", trace.flags},
              {"mask", trace.mask},
@@ -124,16 +125,21 @@ class DiagramBuilder {
             idsOf(call.diagnostics)};
   }
 
-  // The shaders of a hit that the flags of a trace allow.
+  // The shaders of a hit that a trace runs, or why it does not run one.
   struct HitUse {
     std::size_t hit = 0;
-    bool skipsClosestHit = false, skipsAnyHit = false;
+    std::string_view withoutClosestHit = {}, withoutAnyHit = {};
     auto operator<=>(const HitUse&) const = default;
   };
 
   HitUse useOf(const PipelineModel::Trace& trace, std::size_t hit) const {
     const PipelineModel::Hit& shaders = model_.hits[hit];
-    return {hit, trace.skipsClosestHit && shaders.closestHit, trace.skipsAnyHit && shaders.anyHit};
+    HitUse use{hit};
+    if (shaders.closestHit && trace.skipsClosestHit) use.withoutClosestHit = "skipped (SkipClosestHitShader)";
+    if (shaders.closestHit && trace.searches) use.withoutClosestHit = "not run by this trace";
+    if (shaders.anyHit && trace.skipsAnyHit) use.withoutAnyHit = "skipped (Opaque)";
+    if (shaders.anyHit && trace.executes) use.withoutAnyHit = "not run by an execution";
+    return use;
   }
 
   // One box for the groups of a ray type with the same shaders.
@@ -143,12 +149,13 @@ class DiagramBuilder {
       for (const PipelineModel::Target& target : trace.targets)
         if (target.role == Role::closestHit) uses.insert(useOf(trace, target.index));
     using Stage = std::optional<std::size_t>;
-    std::map<std::tuple<std::string, Stage, Stage, Stage, bool, bool>, std::vector<HitUse>> boxes;
+    std::map<std::tuple<std::string, Stage, Stage, Stage, std::string_view, std::string_view>, std::vector<HitUse>>
+        boxes;
     std::vector<const std::vector<HitUse>*> order;
     for (const HitUse& use : uses) {
       const PipelineModel::Hit& hit = model_.hits[use.hit];
       std::vector<HitUse>& box =
-          boxes[{hit.ray, hit.closestHit, hit.anyHit, hit.intersection, use.skipsClosestHit, use.skipsAnyHit}];
+          boxes[{hit.ray, hit.closestHit, hit.anyHit, hit.intersection, use.withoutClosestHit, use.withoutAnyHit}];
       if (box.empty()) order.push_back(&box);
       box.push_back(use);
     }
@@ -159,8 +166,11 @@ class DiagramBuilder {
     const HitUse& use = uses.front();
     const PipelineModel::Hit& first = model_.hits[use.hit];
     DiagramNode node{NodeKind::hit, first.ray.empty() ? "hit" : fmt::format("hit, ray type {}", first.ray), {}, {}};
-    node.rows = {{"closest hit", use.skipsClosestHit ? "skipped (SkipClosestHitShader)" : fileOf(first.closestHit)},
-                 {"any hit", use.skipsAnyHit ? "skipped (Opaque)" : fileOf(first.anyHit)},
+    const auto text = [&](std::string_view without, std::optional<std::size_t> stage) {
+      return without.empty() ? fileOf(stage) : std::string(without);
+    };
+    node.rows = {{"closest hit", text(use.withoutClosestHit, first.closestHit)},
+                 {"any hit", text(use.withoutAnyHit, first.anyHit)},
                  {"intersection", fileOf(first.intersection)}};
     if (!first.closestHit && !first.anyHit && !first.intersection) node.rows = {{"", "no shaders"}};
     Indices diagnostics;
@@ -178,7 +188,7 @@ class DiagramBuilder {
     node.ids = idsOf(diagnostics);
     const std::size_t index = add(std::move(node));
     for (const HitUse& other : uses) hitNodes_[other] = index;
-    if (first.closestHit && !use.skipsClosestHit) stageNodes_[*first.closestHit].push_back(index);
+    if (first.closestHit && use.withoutClosestHit.empty()) stageNodes_[*first.closestHit].push_back(index);
   }
 
   static std::string bindingText(const PipelineModel::Hit& hit) {

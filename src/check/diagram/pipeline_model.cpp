@@ -203,6 +203,8 @@ class ModelBuilder {
     trace.stride = valuesText(facts.stride, decimal);
     trace.miss = valuesText(facts.miss, decimal);
     trace.inLoop = facts.inLoop;
+    trace.searches = site.isSearch();
+    trace.executes = site.isExecution();
     trace.skipsClosestHit = site.skipsClosestHit();
     trace.skipsAnyHit = facts.flags.mustHave(kFlagOpaque);
     describeVariable(site.stage, facts.payload, trace.payload, trace.payloadType, trace.payloadBytes);
@@ -331,6 +333,8 @@ std::string pipelineJson(const PipelineModel& model) {
          {"miss", trace.miss},
          {"payload", {{"name", trace.payload}, {"type", trace.payloadType}, {"bytes", trace.payloadBytes}}},
          {"inLoop", trace.inLoop},
+         {"searches", trace.searches},
+         {"executes", trace.executes},
          {"skipsClosestHit", trace.skipsClosestHit},
          {"skipsAnyHit", trace.skipsAnyHit},
          {"targets", targetsJson(trace.targets)},

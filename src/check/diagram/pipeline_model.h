@@ -59,6 +59,8 @@ struct PipelineModel {
     std::string payload, payloadType;               // names
     std::uint64_t payloadBytes = 0;
     bool inLoop = false;
+    bool searches = false;  // a trace with a hit object: without the shader at the end of the ray
+    bool executes = false;  // the execution of a hit object: only that shader
     bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags
     std::vector<Target> targets;
     Indices diagnostics;

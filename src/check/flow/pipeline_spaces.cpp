@@ -358,12 +358,13 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
         return;
       }
       const spirv::Instruction& difference = i;
-      const bool directed = usesOf(module, difference.result, {GLSLstd450Normalize, GLSLstd450Length}) ||
-                            std::ranges::any_of(module.users(difference.result), [&](std::size_t k) {
-                              const spirv::Instruction& d = module.instructions()[k];
-                              return (d.op == Op::OpDot && d.at(0) == d.at(1)) ||
-                                     (d.op == Op::OpTraceRayKHR && d.at(8) == difference.result);
-                            });
+      const bool directed =
+          usesOf(module, difference.result, {GLSLstd450Normalize, GLSLstd450Length}) ||
+          std::ranges::any_of(module.users(difference.result), [&](std::size_t k) {
+            const spirv::Instruction& d = module.instructions()[k];
+            const auto ray = spirv::rayOperands(d);
+            return (d.op == Op::OpDot && d.at(0) == d.at(1)) || (ray && ray->direction == difference.result);
+          });
       if (directed) search.uses.difference = true;
       if (spirv::splatConstant(module, other) == 1.0 && open.scaled) search.uses.shown = true;
       // A point minus a step along the value.
@@ -376,9 +377,12 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
     case Op::OpFMod: search.uses.pattern = true; return;
     case Op::OpDot: return visitDot(open, i, search);
     case Op::OpTraceRayKHR:
-      search.uses.traceOrigin = search.uses.traceOrigin || i.at(6) == open.id;
-      search.uses.traceDirection = search.uses.traceDirection || i.at(8) == open.id;
+    case Op::OpHitObjectTraceRayNV: {
+      const spirv::RayOperands ray = *spirv::rayOperands(i);
+      search.uses.traceOrigin = search.uses.traceOrigin || ray.origin == open.id;
+      search.uses.traceDirection = search.uses.traceDirection || ray.direction == open.id;
       return;
+    }
     case Op::OpFunctionCall:
     case Op::OpReturnValue:
     case Op::OpImageWrite: search.uses.stored = true; return;

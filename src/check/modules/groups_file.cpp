@@ -210,14 +210,18 @@ class GroupsReader {
     groups.instances.emplace();
     for (const Node& element : elements(node)) {
       requireObject(element);
-      checkMembers(element,
-                   {"name", "record_offset", "mask", "force_opaque", "force_no_opaque", "transformed", "geometries"});
+      checkMembers(element, {"name", "record_offset", "mask", "custom_index", "force_opaque", "force_no_opaque",
+                             "transformed", "geometries"});
       InstanceRecords instance;
       instance.facts.name = std::to_string(groups.instances->size());
       if (const auto name = member(element, "name")) instance.facts.name = text(*name);
       if (const auto offset = member(element, "record_offset"))
         instance.recordOffset = integer(*offset, 0, (1u << 24) - 1);
       if (const auto mask = member(element, "mask")) instance.facts.mask = integer(*mask, 0, 255);
+      if (const auto index = member(element, "custom_index")) {
+        instance.facts.customIndex = integer(*index, 0, (1u << 24) - 1);
+        instance.hasCustomIndex = true;
+      }
       if (const auto opaque = member(element, "force_opaque")) instance.facts.forceOpaque = boolean(*opaque);
       if (const auto opaque = member(element, "force_no_opaque")) instance.facts.forceNoOpaque = boolean(*opaque);
       if (const auto moved = member(element, "transformed")) instance.facts.transformed = boolean(*moved);

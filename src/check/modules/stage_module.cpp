@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "spirv/plain_code.h"
 #include "spirv/plain_lines.h"
+#include "spirv/reorder_code.h"
 
 namespace quintet::check {
 namespace {
@@ -76,6 +77,7 @@ ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t
   constexpr int kMaxUnknown = 64;
   std::vector<std::uint32_t> plain =
       spirv::withPlainCode(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)));
+  const bool isRewritten = spirv::usesReorderExt(words);
   stage.isStub = stage.kind == shader::Stage::intersection && hasNoStatements(plain);
   for (int i = 0; i < kMaxUnknown; ++i) {
     stage.problem.clear();
@@ -87,7 +89,8 @@ ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t
     } catch (const Error& error) {
       const shader::ValidationProblem problem = shader::validate(plain);
       stage.problem = problem.text.empty() ? error.what() : problem.text;
-      stage.malformed = !problem.text.empty() && !problem.unknown;
+      // SPIRV-Tools cannot judge what was rewritten for it.
+      stage.malformed = !problem.text.empty() && !problem.unknown && !isRewritten;
       // What an unknown capability or decoration adds does not matter, unless the module has unknown instructions, too.
       auto reduced = problem.unknown ? spirv::withoutDeclaration(plain, problem.instruction) : std::nullopt;
       if (!reduced) return stage;

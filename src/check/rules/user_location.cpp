@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "spirv/source_text.h"
+#include "spirv/trace_instruction.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -72,7 +73,7 @@ std::optional<SourceLocation> userLocation(const spirv::Module& module, const sp
                                            std::string_view token) {
   std::vector<const spirv::Instruction*> open{&instruction};
   for (std::size_t i = 0; i < open.size() && i < kMaxCallerSteps; ++i) {
-    const bool trace = open[i]->op == spv::Op::OpTraceRayKHR;  // can begin some lines above
+    const bool trace = spirv::rayOperands(*open[i]).has_value();  // can begin some lines above
     const SourceLocation location = trace    ? module.location(*open[i], token)
                                     : i == 0 ? locationAt(module, *open[i], token)
                                              : module.location(*open[i]);

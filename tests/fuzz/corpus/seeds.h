@@ -23,7 +23,8 @@ void addImageSeeds(Corpora&);  // png, jpeg, webp, hdr, exr, ktx2
 void addGltfSeeds(Corpora&);   // gltf, glb
 void addFilmSeeds(Corpora&);   // film
 void addLabSeeds(Corpora&);    // lab_message, lab_zip
-// spirv, modules: stages of the programs in `root`/tests/check/idioms that include no library. Throws Error if there is none.
+// spirv, modules: stages of the programs in `root`/tests/check/idioms that include no library; modules: also HLSL, Slang and hit
+// objects (tests/check/modules, tests/check/engines). Throws Error if there is none.
 void addSpirvSeeds(Corpora&, const std::filesystem::path& root);
 
 }  // namespace quintet::fuzz

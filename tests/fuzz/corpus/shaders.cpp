@@ -13,6 +13,7 @@
 #include "program/load.h"
 #include "seeds.h"
 #include "shader/compiler.h"
+#include "shader/stage.h"
 
 namespace quintet::fuzz {
 namespace {
@@ -41,6 +42,22 @@ void addModuleSeeds(std::vector<Seed>& seeds, const fs::path& folder) {
   }
 }
 
+// Stages with hit objects.
+void addReorderSeeds(std::vector<Seed>& seeds, const fs::path& folder, const shader::Compiler& compiler) {
+  for (const fs::path& file : programsIn(folder)) {
+    const auto stage = shader::stageOfFile(file);
+    if (!stage) continue;
+    shader::Source source;
+    source.stage = *stage;
+    source.name = file.filename().string();
+    source.text = "#version 460\n#extension GL_EXT_ray_tracing : require\n" + readTextFile(file);
+    const shader::Result result = compiler.compile(source);
+    if (!result.ok()) throw Error(file.string() + ": does not compile");
+    const auto bytes = std::as_bytes(std::span(result.spirv));
+    seeds.push_back({file.filename().string() + ".spv", {bytes.begin(), bytes.end()}});
+  }
+}
+
 }  // namespace
 
 void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
@@ -58,6 +75,8 @@ void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
   if (seeds.empty()) throw Error("no SPIR-V module is small enough");
   corpora["modules"] = seeds;
   addModuleSeeds(corpora["modules"], root / "tests/check/modules");
+  for (const char* folder : {"recorded_hits", "reordered_paths"})
+    addReorderSeeds(corpora["modules"], root / "tests/check/engines" / folder, compiler);
 }
 
 }  // namespace quintet::fuzz

@@ -32,7 +32,7 @@ TEST(GroupsFile, DescribesRecordsInTheirOrder) {
     "hit": [{"name": "ball", "closest_hit": "c.spv", "intersection": "d.spv"}, null],
     "callable": ["e.spv"],
     "specialization": {"a.spv": {"0": 4, "1": -1, "2": 0.5, "3": true}},
-    "instances": [{"record_offset": 1, "mask": 3, "geometries": [{"type": "aabbs", "opaque": true}, {"type": "triangles"}]}]
+    "instances": [{"record_offset": 1, "mask": 3, "custom_index": 7, "geometries": [{"type": "aabbs", "opaque": true}, {"type": "triangles"}]}]
   })");
   ASSERT_EQ(pipelines.size(), 1u);
   const DescribedPipeline& p = pipelines[0];
@@ -48,6 +48,8 @@ TEST(GroupsFile, DescribesRecordsInTheirOrder) {
   EXPECT_EQ(p.specialization.at("a.spv").at(2), std::vector<std::uint32_t>{0x3F000000u});
   ASSERT_TRUE(p.groups.instances);
   EXPECT_EQ(p.groups.instances->at(0).recordOffset, 1u);
+  EXPECT_TRUE(p.groups.instances->at(0).hasCustomIndex);
+  EXPECT_EQ(p.groups.instances->at(0).facts.customIndex, 7u);
   EXPECT_EQ(p.groups.instances->at(0).facts.geometryCount, 2u);
   EXPECT_TRUE(p.groups.geometries[0].procedural());
   EXPECT_FALSE(p.groups.geometries[1].opaque());
@@ -68,6 +70,8 @@ TEST(GroupsFile, NamesTheJsonPathOfErrors) {
               AllOf(HasSubstr("/instances/0: "), HasSubstr("'geometries' is missing")));
   EXPECT_THAT(errorOf(R"({"ray_generation": "a", "instances": [{"geometries": [{"type": "box"}]}]})"),
               HasSubstr("/instances/0/geometries/0/type: unknown type 'box'"));
+  EXPECT_THAT(errorOf(R"({"ray_generation": "a", "instances": [{"custom_index": 16777216, "geometries": []}]})"),
+              HasSubstr("/instances/0/custom_index: must be an"));
   EXPECT_THAT(errorOf(R"({"pipelines": []})"), HasSubstr("/pipelines: the list is empty"));
 }
 

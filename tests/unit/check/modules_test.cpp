@@ -170,6 +170,107 @@ TEST(ModuleCheck, ReportsRecordsBeyondTheTable) {
   EXPECT_THAT(p.check(), ElementsAre("Q515 a.rgen:7"));
 }
 
+// Two instances: custom index 0 with record 0, and `index` with `record`.
+RawPipeline withCustomIndex(std::uint32_t index, std::uint32_t record) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rchit") = R"(layout(set = 0, binding = 2) uniform sampler2D textures[4];
+layout(location = 0) rayPayloadInEXT vec4 color;
+hitAttributeEXT vec2 b;
+void main() { color = textureLod(textures[gl_InstanceCustomIndexEXT], b, 0.0); }
+)";
+  p.stages.push_back({"b.rchit",
+                      "layout(location = 0) rayPayloadInEXT vec4 color;\n"
+                      "void main() { color = vec4(float(gl_InstanceCustomIndexEXT)); }\n",
+                      Stage::closestHit});
+  p.groups.hitGroups.push_back(p.groups.hitGroups[0]);
+  p.groups.hitGroups[1].shaders[""].closestHit = "b.rchit";
+  p.groups.geometries.resize(1);
+  p.groups.instances = {instanceOf(0, 0, 1), instanceOf(record, 0, 1)};
+  for (InstanceRecords& instance : *p.groups.instances) instance.hasCustomIndex = true;
+  p.groups.instances->at(1).facts.customIndex = index;
+  return p;
+}
+
+// What the check says besides the missing nonuniformEXT (Q704).
+std::vector<std::string> ofIndices(const RawPipeline& p) {
+  std::vector<std::string> reports = p.check();
+  std::erase_if(reports, [](const std::string& report) { return report.starts_with("Q704"); });
+  return reports;
+}
+
+TEST(ModuleCheck, ReportsCustomIndicesBeyondAnArray) {
+  EXPECT_THAT(ofIndices(withCustomIndex(4, 0)), ElementsAre("Q711 a.rchit:6", "Q801 b.rchit:4"));
+  EXPECT_THAT(ofIndices(withCustomIndex(3, 0)), ElementsAre("Q801 b.rchit:4"));
+  EXPECT_THAT(ofIndices(withCustomIndex(4, 1)), IsEmpty());  // the other shader gets it
+  const auto edited = [](auto edit) {
+    RawPipeline p = withCustomIndex(4, 0);
+    p.groups.hitGroups.resize(1);
+    std::erase_if(p.stages, [](const auto& stage) { return stage.name == "b.rchit"; });
+    edit(p);
+    return ofIndices(p);
+  };
+  EXPECT_THAT(edited([](RawPipeline&) {}), ElementsAre("Q711 a.rchit:6"));
+  // It is unknown, or no ray sees the instance, or a condition excludes the index.
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.instances->at(0).hasCustomIndex = false; }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.tablesKnown = false; }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) {
+                p.groups.instances->at(1).facts.mask = 2;
+                replace(p.text("a.rgen"), "0xFF, 0, 1, 0,", "0x01, 0, 1, 0,");
+              }),
+              IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) {
+                replace(p.text("a.rchit"), "color = textureLod(",
+                        "color = vec4(0); if (gl_InstanceCustomIndexEXT < 4) color = textureLod(");
+              }),
+              IsEmpty());
+  // A mask that is not constant may exclude it.
+  EXPECT_THAT(edited([](RawPipeline& p) {
+                replace(p.text("a.rgen"), "void main",
+                        "layout(push_constant) uniform Push { uint mask; } push;\nvoid main");
+                replace(p.text("a.rgen"), "0xFF, 0, 1, 0,", "push.mask, 0, 1, 0,");
+              }),
+              IsEmpty());
+}
+
+// A loop of bounces: the closest-hit shader sets the throughput for the next ray, but nothing sets it for the first one.
+TEST(ModuleCheck, ReportsMembersThatAreUnsetForTheFirstRay) {
+  const std::string payload = "struct Payload { vec4 color; vec4 throughput; };\n";
+  const auto pipeline = [&](const std::string& flags, const std::string& before) {
+    RawPipeline p = cleanPipeline();
+    p.text("a.rgen") =
+        "layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;\n"
+        "layout(set = 0, binding = 1, rgba8) uniform image2D result;\n" +
+        payload + "layout(location = 0) rayPayloadEXT Payload p;\nvoid main() {\n  p.color = vec4(0);\n  " + before +
+        "\n  for (int i = 0; i < 4; ++i) {\n    traceRayEXT(tlas, " + flags +
+        ", 0xFF, 0, 1, 0, vec3(i), 0.001, vec3(0, 0, 1), 100.0, 0);\n  }\n"
+        "  imageStore(result, ivec2(gl_LaunchIDEXT.xy), p.color);\n}\n";
+    p.text("a.rmiss") = payload +
+                        "layout(location = 0) rayPayloadInEXT Payload p;\n"
+                        "void main() { p.color += p.throughput; }\n";
+    p.text("a.rchit") = payload +
+                        "layout(location = 0) rayPayloadInEXT Payload p;\nhitAttributeEXT vec2 b;\n"
+                        "void main() { p.color += vec4(b, 0, 0); p.throughput = vec4(b, 0, 1); }\n";
+    return p;
+  };
+  RawPipeline p = pipeline("gl_RayFlagsNoneEXT", "");
+  EXPECT_THAT(p.check(), ElementsAre("Q107 a.rmiss:5"));
+  EXPECT_THAT(p.diagnostics().front().text,
+              HasSubstr("nothing sets it before the first ray of the trace at a.rgen:11"));
+  EXPECT_THAT(pipeline("gl_RayFlagsNoneEXT", "p.throughput = vec4(1);").check(), IsEmpty());
+  // A trace before the loop sets it, the flags of the first ray differ, or a condition tells the first ray from the others.
+  const std::string first = "traceRayEXT(tlas, 0, 0xFF, 0, 1, 1, vec3(0), 0.001, vec3(0, 0, 1), 100.0, 0);";
+  RawPipeline twice = pipeline("gl_RayFlagsNoneEXT", first);
+  twice.groups.misses.push_back({{}, "b.rmiss", {}, 0});
+  twice.stages.push_back(
+      {"b.rmiss",
+       payload + "layout(location = 0) rayPayloadInEXT Payload p;\nvoid main() { p.throughput = vec4(1); }\n",
+       Stage::miss});
+  EXPECT_THAT(twice.check(), IsEmpty());
+  EXPECT_THAT(pipeline("i == 0 ? gl_RayFlagsOpaqueEXT : gl_RayFlagsNoneEXT", "").check(), IsEmpty());
+  replace(p.text("a.rmiss"), "{ p.color += p.throughput; }", "{ if (gl_RayTminEXT > 0.0) p.color += p.throughput; }");
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
 TEST(ModuleCheck, ReportsGeometryOfADifferentKind) {
   RawPipeline p = cleanPipeline();
   p.groups.geometries.resize(1);
@@ -540,9 +641,12 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
     return head;
   };
   using spv::Op;
+  add(Op::OpCapability, {4479});  // RayTracingKHR
+  add(Op::OpExtension, text("SPV_KHR_ray_tracing"));
+  add(Op::OpExtension, text("SPV_KHR_non_semantic_info"));
   add(Op::OpExtInstImport, with({1}, text("NonSemantic.Shader.DebugInfo.100")));
   add(Op::OpMemoryModel, {0, 1});
-  add(Op::OpEntryPoint, with({5317, 20}, text("main")));
+  add(Op::OpEntryPoint, with(with({5317, 20}, text("main")), {10}));
   add(Op::OpString, with({2}, text("a.hlsl")));
   add(Op::OpString, with({3}, text("float4 color;")));
   add(Op::OpTypeVoid, {4});
@@ -552,6 +656,7 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
   add(Op::OpTypePointer, {8, 5342, 7});
   add(Op::OpConstant, {7, 9, 0});
   add(Op::OpVariable, {8, 10, 5342});
+  add(Op::OpConstant, {5, 14, 8});
   add(Op::OpExtInst, {4, 11, 1, 35, 2, 3});                         // DebugSource
   add(Op::OpExtInst, {4, 12, 1, 18, 2, 4, 11, 6, 6, 4, 2, 10, 6});  // DebugGlobalVariable
   add(Op::OpTypeFunction, {13, 4});
@@ -570,6 +675,9 @@ TEST(ModuleCheck, ConvertsDebugInfoToLines) {
     if (i.op != Op::OpStore) continue;
     EXPECT_EQ(locationText(module->location(i).file, module->location(i).line, 0), "a.hlsl:17");
   }
+  // spirv-opt can process it.
+  const ModuleStage stage = stageModule("a.spv", words, {spv::ExecutionModel::MissKHR, "main"}, {});
+  EXPECT_EQ(stage.problem, "");
   const auto direct = spirv::Module::read(words);  // the reader understands both
   ASSERT_TRUE(direct);
   EXPECT_EQ(direct->source("a.hlsl"), "float4 color;");

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,9 +25,13 @@ inline constexpr const char* kRayHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 )";
 
-// The lines of `text` start at 3. `name` becomes the file of lines.
+// The lines of `text` start at 3. `name` becomes the file of lines. Each text is compiled once: variants of a pipeline differ in
+// one of its stages.
 inline std::vector<std::uint32_t> compileRaw(shader::Stage stage, const std::string& text, const std::string& name,
                                              bool lines = true) {
+  static std::map<std::tuple<shader::Stage, std::string, std::string, bool>, std::vector<std::uint32_t>> known;
+  const auto [found, isNew] = known.try_emplace({stage, text, name, lines});
+  if (!isNew) return found->second;
   shader::CompilerOptions options;
   options.optimize = false;
   options.debugInfo = lines;
@@ -36,7 +43,7 @@ inline std::vector<std::uint32_t> compileRaw(shader::Stage stage, const std::str
   source.optimize = false;
   const shader::Result result = compiler.compile(source);
   for (const Diagnostic& d : result.diagnostics) ADD_FAILURE() << d.format();
-  return result.spirv;
+  return found->second = result.spirv;
 }
 
 // A small pipeline: ray generation 'a.rgen', miss shaders, one hit group. Tests edit it.
@@ -49,6 +56,8 @@ struct RawPipeline {
   PipelineGroups groups;
   bool lines = true;
   std::optional<shader::SpecializationValues> values = {};
+  std::function<std::vector<std::uint32_t>(const std::vector<std::uint32_t>&)> rewrite =
+      {};  // the module of each stage
 
   std::string& text(const std::string& name) {
     for (Stage& stage : stages)
@@ -60,7 +69,8 @@ struct RawPipeline {
   std::vector<ModuleStage> modules() const {
     std::vector<ModuleStage> result;
     for (const Stage& stage : stages) {
-      const std::vector<std::uint32_t> words = compileRaw(stage.kind, stage.text, stage.name, lines);
+      std::vector<std::uint32_t> words = compileRaw(stage.kind, stage.text, stage.name, lines);
+      if (rewrite) words = rewrite(words);
       std::string why;
       const auto summary = summarize(words, why);
       EXPECT_TRUE(summary && summary->entryPoints.size() == 1) << why;

@@ -21,6 +21,7 @@
 #include "check/diagram/diagram.h"
 #include "check/diagram/svg.h"
 #include "check/modules_test_support.h"
+#include "check/reorder_test_support.h"
 #include "job/live_module_check.h"
 #include "job/module_checks.h"
 #include "shader/shader_test_support.h"
@@ -196,8 +197,8 @@ TEST(ForeignModules, TracesOfMotionBlurAreFollowed) {
   EXPECT_THAT(ForeignModule("hlsl_library", wrong).found(), ElementsAre("Q104 lib.hlsl:24"));
 }
 
-// Which shaders a hit object runs is unknown: the rules that need it are left out, and the others stay.
-TEST(ForeignModules, HitObjectsAreANote) {
+// Shader invocation reorder of both extensions; in the EXT extension also as one combined instruction.
+TEST(ForeignModules, HitObjectsAreFollowed) {
   const Edits reorder{
       {"OpCapability RayTracingKHR", "OpCapability RayTracingKHR\nOpCapability ShaderInvocationReorderNV"},
       {"OpExtension \"SPV_KHR_ray_tracing\"",
@@ -209,12 +210,33 @@ TEST(ForeignModules, HitObjectsAreANote) {
        "%g_payload = OpVariable %local_payload Function\n%g_object = OpVariable %local_object Function"},
       {"OpTraceRayKHR %g3", "OpHitObjectTraceRayNV %g_object %g3"},
       {"%forward %float_far %sent", "%forward %float_far %sent\nOpHitObjectExecuteShaderNV %g_object %sent"}};
-  const auto note = HasSubstr("the shaders that OpHitObjectTraceRayNV runs are unknown");
-  for (const bool described : {true, false})
-    EXPECT_THAT(ForeignModule("hlsl_library", reorder).found(described), ElementsAre(note)) << described;
+  const auto expectFound = [](const Edits& edits, bool described, const auto& matcher) {
+    EXPECT_THAT(ForeignModule("hlsl_library", edits).found(described), matcher);
+    for (const bool combines : {false, true}) {
+      ForeignModule ext("hlsl_library", edits);
+      ext.words() = check::toReorderExt(ext.words(), combines);
+      EXPECT_THAT(ext.found(described), matcher) << described << combines;
+    }
+  };
+  for (const bool described : {true, false}) expectFound(reorder, described, IsEmpty());
   Edits wrong = reorder;
+  wrong.insert(wrong.end(), kUnwritten.begin(), kUnwritten.end());
+  expectFound(wrong, true, ElementsAre("Q104 lib.hlsl:24"));
+  wrong = reorder;
   wrong.push_back({"%float_far %shadow", "%float_0 %shadow"});
-  EXPECT_THAT(ForeignModule("hlsl_library", wrong).found(), ElementsAre("Q509 lib.hlsl:44", note));
+  expectFound(wrong, true, ElementsAre("Q509 lib.hlsl:44"));
+}
+
+// A module of the EXT extension that SPIRV-Tools cannot judge is not called invalid.
+TEST(ForeignModules, UnknownInstructionsOfReorderingAreANote) {
+  ForeignModule module("hlsl_library");
+  std::vector<std::uint32_t>& words = module.words();
+  const std::vector<std::uint32_t> capability{2u << 16 | 17u, 5388}, unknown{2u << 16 | 5307u, 1};
+  words.insert(words.begin() + 5, capability.begin(), capability.end());
+  words.insert(words.end() - 2, unknown.begin(), unknown.end());
+  const std::vector<Diagnostic> notes = module.check(true);
+  EXPECT_THAT(notes, testing::Not(IsEmpty()));
+  for (const Diagnostic& d : notes) EXPECT_EQ(d.severity, Severity::note) << d.text;
 }
 
 // A folder of tests/check/engines: a pipeline of GLSL files, its groups, and mistakes that are edits of a file.
@@ -249,8 +271,20 @@ class EnginePipeline {
     text.replace(at, mistake.from.size(), mistake.to);
   }
 
-  // "Q104 a.rgen", with its groups or without.
-  std::vector<std::string> found(bool described) const {
+  // "Q104 a.rgen", with its groups or without. `asExt`: hit objects of the EXT extension.
+  std::vector<std::string> found(bool described, bool asExt = false) const {
+    std::vector<std::string> result;
+    for (const Diagnostic& d : checked(described, asExt, false).diagnostics())
+      result.push_back(d.id + " " + fs::path(d.file).filename().string());
+    return result;
+  }
+
+  std::string svg() const {
+    return check::svgText(check::diagramOf(checked(true, false, true).programs.at(0).model.value()));
+  }
+
+ private:
+  CheckReport checked(bool described, bool asExt, bool describe) const {
     const TemporaryFolder folder;
     const fs::path groups = fs::path(folder.path()) / "pipeline.json";
     for (const auto& [name, text] : files_) {
@@ -258,18 +292,16 @@ class EnginePipeline {
       if (name == "pipeline.json") writeFile(file, text);
       const auto stage = shader::stageOfFile(file);
       if (!stage) continue;
-      const std::vector<std::uint32_t> words = check::compileRaw(*stage, text, name);
+      std::vector<std::uint32_t> words = check::compileRaw(*stage, text, name);
+      if (asExt) words = check::toReorderExt(words);
       writeFile(file.string() + ".spv", std::as_bytes(std::span(words)));
     }
     CheckObserver observer;
-    const ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
-    std::vector<std::string> result;
-    for (const Diagnostic& d : checkModuleFiles(request, observer).diagnostics())
-      result.push_back(d.id + " " + fs::path(d.file).filename().string());
-    return result;
+    ModuleCheckRequest request{{folder.path().string()}, described ? groups : fs::path(), {}};
+    request.describe = describe;
+    return checkModuleFiles(request, observer);
   }
 
- private:
   std::map<std::string, std::string> files_;
 };
 
@@ -289,6 +321,17 @@ TEST_P(EngineShaders, MistakesAreReportedOnce) {
     EnginePipeline pipeline(folder_);
     pipeline.make(mistake);
     EXPECT_THAT(pipeline.found(true), ElementsAre(mistake.found)) << mistake.file << ": " << mistake.to;
+  }
+}
+
+// The same pipeline and its mistakes with the cross-vendor extension.
+TEST(ForeignModules, PathsAreReorderedWithTheExtExtension) {
+  const EnginePipeline correct(kEngines / "reordered_paths");
+  for (const bool described : {true, false}) EXPECT_THAT(correct.found(described, true), IsEmpty());
+  for (const EnginePipeline::Mistake& mistake : correct.mistakes()) {
+    EnginePipeline pipeline = correct;
+    pipeline.make(mistake);
+    EXPECT_THAT(pipeline.found(true, true), ElementsAre(mistake.found)) << mistake.file << ": " << mistake.to;
   }
 }
 
@@ -323,6 +366,13 @@ TEST(ForeignModules, AreDescribedOnRequest) {
   EXPECT_THAT(model.traces[0].targets, testing::SizeIs(3));  // both hit groups and a miss shader
   ASSERT_THAT(model.calls, testing::SizeIs(1));
   EXPECT_THAT(check::svgText(check::diagramOf(model)), HasSubstr("balls"));
+}
+
+// A trace with a hit object and its execution are nodes of their own, with the shaders that each runs.
+TEST(ForeignModules, HitObjectsAreDrawn) {
+  const std::string svg = EnginePipeline(kEngines / "reordered_paths").svg();
+  for (const char* text : {"trace paths.rgen", "execution paths.rgen", "not run by this trace"})
+    EXPECT_THAT(svg, HasSubstr(text));
 }
 
 // --watch: a module that is written again, and a new one in the folder.

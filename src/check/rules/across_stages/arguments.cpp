@@ -34,14 +34,19 @@ class ArgumentRule {
   void check(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
     location_ = graph_.location(site);
+    noun_ = site.noun();
+    if (site.isExecution()) {  // the search has the arguments; a recorded miss has only its index
+      if (trace.ray == spirv::Module::kNone) checkMissIndex(trace);
+      return checkShadowMiss(site);
+    }
     if (inRange(trace.offset, "offset", "Q503", kRecordBits)) inRange(trace.stride, "stride", "Q503", kRecordBits);
-    if (inRange(trace.miss, "miss index", "Q504", kMissBits) && graph_.groups.tablesKnown) checkMiss(trace);
+    if (trace.missRuns) checkMissIndex(trace);
     for (const std::uint32_t mask : wrongValues(trace.mask, kMaskBits + 1))
       if (mask != kAllBits || graph_.usesLibrary)  // ~0 is the usual mask of HLSL
         report_.add("Q505", location_,
                     fmt::format("the cull mask of this trace is {}{:#x}, but only its low 8 bits, {:#04x}, are used",
                                 boundText(trace.mask), mask, mask & kMaskBits));
-    checkShadowMiss(site);
+    if (!site.isSearch()) checkShadowMiss(site);
     if (trace.flags.certain())
       for (const std::uint32_t flags : trace.flags.values) checkFlags(flags);
     else
@@ -87,17 +92,18 @@ class ArgumentRule {
     const std::vector<std::uint32_t> wrong = wrongValues(argument, limit + 1);
     if (wrong.empty()) return true;
     report_.add(id, location_,
-                fmt::format("the {} of this trace is {}{}, but the maximum is {}; the device would use {}", name,
+                fmt::format("the {} of this {} is {}{}, but the maximum is {}; the device would use {}", name, noun_,
                             boundText(argument), wrong.front(), limit,
                             argument.certain() ? std::to_string(wrong.front() & limit) : "its low bits"));
     return false;
   }
 
-  void checkMiss(const spirv::TraceFacts& trace) {
+  void checkMissIndex(const spirv::TraceFacts& trace) {
+    if (!inRange(trace.miss, "miss index", "Q504", kMissBits) || !graph_.groups.tablesKnown) return;
     for (const std::uint32_t index : wrongValues(trace.miss, static_cast<std::uint32_t>(graph_.groups.misses.size())))
       report_.add("Q502", location_,
-                  fmt::format("the miss index of this trace is {}{}, but the {} has {}", boundText(trace.miss), index,
-                              graph_.groups.noun, countText(graph_.groups.misses.size(), "miss shader")));
+                  fmt::format("the miss index of this {} is {}{}, but the {} has {}", noun_, boundText(trace.miss),
+                              index, graph_.groups.noun, countText(graph_.groups.misses.size(), "miss shader")));
   }
 
   static bool isShadow(const spirv::TraceFacts& trace) {
@@ -194,6 +200,7 @@ class ArgumentRule {
   const PipelineGraph& graph_;
   Report& report_;
   SourceLocation location_;                           // of the trace or call
+  std::string_view noun_;                             // of the trace
   std::unordered_map<std::string, MissUses> misses_;  // by file
 };
 

@@ -86,6 +86,10 @@ bool alwaysTested(const PipelineGraph& graph, HitGroupRay hit) {
     const auto has = [&](Role role) {
       return std::ranges::find(edgesOf(targets.edges, hit), role, &Edge::role) != edgesOf(targets.edges, hit).end();
     };
+    const TraceSite& first = graph.traces[targets.traces.front()];
+    if (first.isSearch()) return std::ranges::find(targets.hits, hit) == targets.hits.end() || has(Role::anyHit);
+    // Hit objects that no trace of the stage has filled are not tested.
+    if (first.isExecution()) return !has(Role::closestHit) || first.trace->ray != spirv::Module::kNone;
     return !has(Role::closestHit) || has(Role::anyHit);
   });
 }

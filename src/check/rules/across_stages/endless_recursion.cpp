@@ -83,14 +83,17 @@ class EndlessRecursion {
     if (!position || !runsAlways(facts, at) || !site.trace->mask.known) return false;
     if (std::ranges::any_of(site.trace->mask.values, [](std::uint32_t mask) { return (mask & 0xFFu) == 0; }))
       return false;
-    const spirv::Instruction& call = facts.module().instructions()[at];
-    for (const std::size_t argument : {1u, 2u, 3u, 4u, 5u, 7u, 9u})
-      if (dependsOnCaller(facts, position->function, call.at(argument))) return false;
+    const auto ray = graph_.ray(site);
+    if (!ray || site.isSearch()) return false;
+    for (const spirv::Id argument : {ray->flags, ray->mask, ray->offset, ray->stride, ray->miss, ray->tmin, ray->tmax})
+      if (dependsOnCaller(facts, position->function, argument)) return false;
     // An any-hit shader can end the recursion by ignoring hits.
     const auto [ignores, isNew] = ignores_.try_emplace(site.targets, false);
     if (isNew)
-      ignores->second = std::ranges::any_of(
-          site.edges, [&](const Edge& edge) { return edge.role == Role::anyHit && graph_.facts(edge).ignores(); });
+      ignores->second = std::ranges::any_of(site.hits, [&](HitGroupRay hit) {
+        const PipelineStage* anyHit = graph_.stage(graph_.shaders(hit).anyHit);
+        return anyHit && anyHit->facts && anyHit->facts->ignores();
+      });
     return !ignores->second;
   }
 
@@ -144,8 +147,9 @@ class EndlessRecursion {
       if (stage == to) return true;
       if (seen[stage]) continue;
       seen[stage] = true;
-      const auto sites = std::ranges::equal_range(sites_, stage, {}, &TraceSite::stage);
-      for (const TraceSite* site : sites) {
+      const auto first = std::ranges::lower_bound(sites_, stage, {}, &TraceSite::stage);
+      for (auto next = first; next != sites_.end() && (*next)->stage == stage; ++next) {
+        const TraceSite* site = *next;
         if (followed[site->targets]) continue;
         followed[site->targets] = true;
         for (const Edge& edge : site->edges)

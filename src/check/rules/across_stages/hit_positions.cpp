@@ -244,25 +244,25 @@ class HitPositions {
     const auto sum = module.definitionIndex(position.sum->result);
     for (const TraceSite& site : graph_.tracesOf(stage)) {
       if (!spirv::canRunAfter(module, sum, site.trace->instruction)) continue;
-      const spirv::Instruction& trace = module.instructions()[site.trace->instruction];
-      if (!spirv::sameValue(module, position.origin, trace.at(6))) continue;
-      const std::string text = differenceOf(module, trace, position.direction);
+      const auto ray = graph_.ray(site);
+      if (!ray || !spirv::sameValue(module, position.origin, ray->origin)) continue;
+      const std::string text = differenceOf(module, *ray, position.direction);
       if (text.empty() || !isPlainT(site, withoutOffset(module, position.t))) continue;
       return add(stage, position, text, site);
     }
   }
 
   // Says how the direction of a position differs in length from the one of the trace; empty if it does not.
-  static std::string differenceOf(const spirv::Module& module, const spirv::Instruction& trace, Id direction) {
-    const Lengths lengths(module, trace.at(6));
-    const Id unit = normalizedOf(module, direction), unitOfRay = normalizedOf(module, trace.at(8));
-    if (unit != 0 && spirv::sameValue(module, unit, trace.at(8)) && lengths.differs(unit))
+  static std::string differenceOf(const spirv::Module& module, const spirv::RayOperands& ray, Id direction) {
+    const Lengths lengths(module, ray.origin);
+    const Id unit = normalizedOf(module, direction), unitOfRay = normalizedOf(module, ray.direction);
+    if (unit != 0 && spirv::sameValue(module, unit, ray.direction) && lengths.differs(unit))
       return "the hit position is computed with the normalized direction, but the ray was traced with a direction that "
              "is not normalized";
     if (unitOfRay != 0 && spirv::sameValue(module, unitOfRay, direction) && lengths.differs(unitOfRay))
       return "the hit position is computed with a direction that is not normalized, but the ray was traced with the "
              "normalized direction";
-    if (isMultiple(module, trace.at(8), direction))
+    if (isMultiple(module, ray.direction, direction))
       return "the ray was traced with a multiple of the direction with which the hit position is computed";
     return {};
   }
@@ -277,9 +277,8 @@ class HitPositions {
   }
 
   bool hasOtherLength(const TraceSite& site) const {
-    const spirv::Module& module = graph_.facts(site).module();
-    const spirv::Instruction& trace = module.instructions()[site.trace->instruction];
-    return Lengths(module, trace.at(6)).differs(trace.at(8));
+    const auto ray = graph_.ray(site);
+    return ray && Lengths(graph_.facts(site).module(), ray->origin).differs(ray->direction);
   }
 
   // True if the value is a member of the payload to which all closest-hit shaders of the trace store gl_HitTEXT as it is.

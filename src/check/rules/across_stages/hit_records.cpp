@@ -23,7 +23,7 @@ class RecordRule {
     if (groups_.hitRecords != HitRecords::byRecord) return;
     std::vector<bool> correct(graph_.targets.size(), false);  // equal traces use the same records
     for (const TraceSite& site : graph_.traces)
-      if (!correct[site.targets]) correct[site.targets] = checkTrace(site);
+      if (!correct[site.targets] && !site.isExecution()) correct[site.targets] = checkTrace(site);
     if (!groups_.groupsKnown || !graph_.error.empty()) return;
     findAnyHits();
     for (std::size_t group = 0; group < groups_.hitGroups.size(); ++group) checkAnyHit({group, 0});
@@ -83,7 +83,7 @@ class RecordRule {
     runs_ = hasTrace_;
     std::vector<bool> known(graph_.targets.size(), false);
     for (const TraceSite& site : graph_.traces) {
-      if (known[site.targets]) continue;
+      if (known[site.targets] || site.isExecution()) continue;  // the search runs any-hit shaders
       known[site.targets] = true;
       const spirv::ArgumentValues& flags = site.trace->flags;
       const bool runs = !flags.mustHave(kFlagOpaque) && !flags.mustHave(kFlagCullNoOpaque);

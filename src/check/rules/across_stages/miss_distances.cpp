@@ -67,8 +67,8 @@ class MissDistances {
   void checkOrigin(const TraceSite& site) {
     const PipelineStage& stage = graph_.stages[site.stage];
     const spirv::Module& module = graph_.facts(site).module();
-    const Id origin = module.instructions()[site.trace->instruction].at(6);
-    if (stage.kind == shader::Stage::miss && isEndOfRay(module, origin))
+    const auto ray = spirv::rayOperands(module.instructions()[site.trace->instruction]);
+    if (stage.kind == shader::Stage::miss && ray && isEndOfRay(module, ray->origin))
       report_.addOncePerLine(
           "Q719", graph_.location(site),
           "the ray starts at the distance gl_RayTmaxEXT, but in a miss shader that is the tmax of the "
@@ -161,10 +161,10 @@ class MissDistances {
       }
     const std::vector<Id> values = valuesAfter(site, leaf);
     return std::ranges::any_of(facts.traces(), [&](const spirv::TraceFacts& next) {
-      const spirv::Instruction& trace = module.instructions()[next.instruction];
-      return spirv::dependsOn(module, trace.at(6), [&](const spirv::Instruction& i) {
-        return i.op == Op::OpVectorTimesScalar && std::ranges::find(values, i.at(1)) != values.end();
-      });
+      const auto ray = spirv::rayOperands(module.instructions()[next.instruction]);
+      return ray && spirv::dependsOn(module, ray->origin, [&](const spirv::Instruction& i) {
+               return i.op == Op::OpVectorTimesScalar && std::ranges::find(values, i.at(1)) != values.end();
+             });
     });
   }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q107: a part of a payload is read before anything has set it: in the tracing stage before its first trace, or in a
-// shader that the trace runs, if no tracing stage sets it.
+// shader that the trace runs, if no tracing stage sets it. In a loop, shaders of the trace can set it for its next ray, but not
+// for the first one.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "check/rules/across_stages/payload_receivers.h"
 #include "check/rules/across_stages/shared_data.h"
@@ -16,6 +18,12 @@ namespace quintet::check {
 namespace {
 
 using spv::StorageClass;
+
+// Which rays a search for what sets a part considers.
+enum class Rays {
+  any,   // shaders that the same trace ran for an earlier ray count
+  first  // they do not, if nothing decides that the first ray runs other shaders
+};
 
 class InputRule {
  public:
@@ -51,12 +59,16 @@ class InputRule {
     const spirv::StageFacts& facts = *stage.facts;
     std::map<const TraceSite*, std::vector<LeafGroup>> groups;  // by the trace before which nothing sets the leaves
     for (std::uint32_t leaf = 0; leaf < facts.leaves(payload.id).count(); ++leaf) {
-      const std::vector<std::size_t> reads = facts.inputReads(payload.id, leaf);
+      std::vector<std::size_t> reads = facts.inputReads(payload.id, leaf);
       if (reads.empty()) continue;
-      std::set<std::size_t> seen;
-      std::vector<const TraceSite*> unset;
-      if (isSet(indexOf(stage), leaf, seen, unset) || unset.empty()) continue;
-      addTo(groups[unset.front()], {}, leaf, reads.front());
+      if (const TraceSite* unset = unsetTrace(stage, leaf, Rays::any)) {
+        addTo(groups[unset], {}, leaf, reads.front());
+        continue;
+      }
+      // A condition could tell the first ray from the others.
+      std::erase_if(reads, [&](std::size_t i) { return !runsAlways(facts, facts.accesses()[i].instruction); });
+      if (const TraceSite* unset = reads.empty() ? nullptr : unsetTrace(stage, leaf, Rays::first))
+        addTo(groups[unset], {"", "the first ray of ", ""}, leaf, reads.front());
     }
     for (const auto& [trace, leaves] : groups) {
       const SourceLocation origin = graph_.location(*trace);
@@ -65,12 +77,12 @@ class InputRule {
           const std::string name = nameOf(payload, part);
           if (program::isLibraryStage(stage.file))
             report_.add("Q107", origin,
-                        fmt::format("the {} shader '{}' reads {}, but nothing sets it before this trace",
-                                    shader::stageName(stage.kind), stage.file, name));
+                        fmt::format("the {} shader '{}' reads {}, but nothing sets it before {}this trace",
+                                    shader::stageName(stage.kind), stage.file, name, group.text.after));
           else
             report_.add("Q107", graph_.location(stage, locationOf(facts, facts.accesses()[group.read])),
-                        fmt::format("{} is read here, but nothing sets it before the trace at {}:{}", name, origin.file,
-                                    origin.line));
+                        fmt::format("{} is read here, but nothing sets it before {}the trace at {}:{}", name,
+                                    group.text.after, origin.file, origin.line));
         }
       }
     }
@@ -80,17 +92,33 @@ class InputRule {
     return static_cast<std::size_t>(&stage - graph_.stages.data());
   }
 
+  // True if the instruction runs on each path through the stage.
+  static bool runsAlways(const spirv::StageFacts& facts, std::size_t instruction) {
+    const auto position = facts.module().position(instruction);
+    const spirv::Function* entry = facts.module().entry();
+    return position && entry && &facts.module().functions()[position->function] == entry &&
+           facts.flow(position->function).controllers(position->block).empty();
+  }
+
+  // The first trace before which nothing sets the leaf that the stage receives; null if something does.
+  const TraceSite* unsetTrace(const PipelineStage& stage, std::uint32_t leaf, Rays rays) const {
+    std::set<std::size_t> seen;
+    std::vector<const TraceSite*> unset;
+    return isSet(indexOf(stage), leaf, rays, seen, unset) || unset.empty() ? nullptr : unset.front();
+  }
+
   // True if something can set the leaf of the payload that the stage receives. Adds the traces of stages that declare
   // the payload and do not set the leaf.
-  bool isSet(std::size_t stage, std::uint32_t leaf, std::set<std::size_t>& seen,
+  bool isSet(std::size_t stage, std::uint32_t leaf, Rays rays, std::set<std::size_t>& seen,
              std::vector<const TraceSite*>& unset) const {
     if (!seen.insert(stage).second) return false;
     for (const TraceSite* site : receivers_.tracesTo(stage)) {
-      if (!sends(*site, stage) || setsBefore(*site, leaf)) return true;
+      if (rays == Rays::first && !runsForEachRay(*site, stage)) return true;
+      if (!sends(*site, stage) || setsBefore(*site, leaf, rays)) return true;
       const spirv::StageFacts& tracer = graph_.facts(*site);
       const spirv::SharedVariable* sent = tracer.variable(site->trace->payload);
       if (sent->storage == StorageClass::IncomingRayPayloadKHR) {
-        if (isSet(site->stage, leaf, seen, unset)) return true;
+        if (isSet(site->stage, leaf, rays, seen, unset)) return true;
       } else if (isReadUnwritten(*site, leaf)) {
         return true;  // Q104 reports it
       } else {
@@ -98,6 +126,16 @@ class InputRule {
       }
     }
     return false;
+  }
+
+  // True if the trace can run the stage for each of its rays: nothing that can differ between rays selects the record.
+  bool runsForEachRay(const TraceSite& site, std::size_t stage) const {
+    const spirv::TraceFacts& trace = *site.trace;
+    for (const spirv::ArgumentValues* argument : {&trace.flags, &trace.mask, &trace.offset, &trace.stride, &trace.miss})
+      if (!argument->exact()) return false;
+    return std::ranges::any_of(receivers_.edges(site), [&](const Edge* edge) {
+      return edge->exact && receivers_.kindOfStage(edge->stage) == receivers_.kindOfStage(stage);
+    });
   }
 
   // True if the trace sends the type that the stage receives.
@@ -120,13 +158,13 @@ class InputRule {
   }
 
   // True if the tracing stage, or a shader that it runs before, sets the leaf without reading it first.
-  bool setsBefore(const TraceSite& site, std::uint32_t leaf) const {
-    const auto [known, isNew] = setsBefore_.try_emplace({&site, leaf}, false);
-    if (isNew) known->second = findSetsBefore(site, leaf);
+  bool setsBefore(const TraceSite& site, std::uint32_t leaf, Rays rays) const {
+    const auto [known, isNew] = setsBefore_.try_emplace({&site, leaf, rays}, false);
+    if (isNew) known->second = findSetsBefore(site, leaf, rays);
     return known->second;
   }
 
-  bool findSetsBefore(const TraceSite& site, std::uint32_t leaf) const {
+  bool findSetsBefore(const TraceSite& site, std::uint32_t leaf, Rays rays) const {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const spirv::Id sent = site.trace->payload;
     const bool own = tracer.variable(sent)->storage == StorageClass::RayPayloadKHR;
@@ -136,7 +174,8 @@ class InputRule {
     if (std::ranges::any_of(tracer.accesses(), writes) && (own || !tracer.readsBeforeWriting(sent, leaf))) return true;
     for (const TraceSite& other : graph_.tracesOf(site.stage)) {
       if (other.trace->payload != sent) continue;
-      const bool before = spirv::canRunAfter(tracer.module(), site.trace->instruction, other.trace->instruction);
+      const bool before = spirv::canRunAfter(tracer.module(), site.trace->instruction, other.trace->instruction) &&
+                          (&other != &site || rays == Rays::any);
       for (const Edge* edge : receivers_.edges(other)) {
         if (edge->role == Role::intersection || (!before && edge->role != Role::anyHit)) continue;
         const PayloadReceiver& receiver = receivers_.of(edge->stage);
@@ -152,7 +191,7 @@ class InputRule {
   const PipelineGraph& graph_;
   const PayloadReceivers& receivers_;
   Report& report_;
-  mutable std::map<std::pair<const TraceSite*, std::uint32_t>, bool> setsBefore_;  // cache
+  mutable std::map<std::tuple<const TraceSite*, std::uint32_t, Rays>, bool> setsBefore_;  // cache
 };
 
 }  // namespace

@@ -18,7 +18,6 @@ namespace {
 
 using spv::StorageClass;
 using LeafList = std::vector<std::uint32_t>;
-constexpr const char* kReadAfter = " is read after this trace";
 
 class MemberRule {
  public:
@@ -33,6 +32,7 @@ class MemberRule {
     tracer_ = &tracer;
     payload_ = payload;
     sameType_ = &receivers_.sameTypes(site);
+    if (site.isSearch()) return checkSearch();
     LeafList read;
     std::vector<LeafGroup> unwritten, overwritten, stale;
     for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload->id).count(); ++leaf) {
@@ -80,9 +80,10 @@ class MemberRule {
   }
   bool hasSameType(const Edge& edge) const { return (*sameType_)[receivers_.classOf(edge.stage)]; }
 
-  bool writes(const Edge& edge, std::uint32_t leaf, bool always) const {
-    if (!hasSameType(edge)) return true;  // Q101
-    const PayloadReceiver& receiver = receivers_.of(edge.stage);
+  bool writes(const Edge& edge, std::uint32_t leaf, bool always) const { return writes(edge.stage, leaf, always); }
+  bool writes(std::size_t stage, std::uint32_t leaf, bool always) const {
+    if (!(*sameType_)[receivers_.classOf(stage)]) return true;  // Q101
+    const PayloadReceiver& receiver = receivers_.of(stage);
     if (!receiver.payload || leaf >= receiver.writes.size()) return false;
     // Which path runs can depend on a specialization constant with which the other stages agree.
     const bool each = always && !receiver.facts->hasUnknownConstants();
@@ -94,7 +95,12 @@ class MemberRule {
     return hasSameType(edge) && leaf < receiver.readsIn.size() && receiver.readsIn[leaf];
   }
 
+  // Also in the search, before the execution of a hit object.
   bool anyHitWrites(HitGroupRay hit, std::uint32_t leaf) const {
+    if (site_->isExecution()) {
+      const PipelineStage* anyHit = graph_.stage(graph_.shaders(hit).anyHit);
+      return anyHit && anyHit->facts && writes(static_cast<std::size_t>(anyHit - graph_.stages.data()), leaf, false);
+    }
     return std::ranges::any_of(edgesOf(site_->edges, hit), [&](const Edge& edge) {
       return edge.role == Role::anyHit && writes(edge, leaf, false);
     });
@@ -102,6 +108,9 @@ class MemberRule {
 
   // True if a shader of the role, or an any-hit shader before it, can write the leaf.
   bool canWrite(std::uint32_t leaf, Role role) const {
+    if (site_->isExecution() && role == Role::closestHit &&
+        std::ranges::any_of(receivers_.hits(*site_), [&](HitGroupRay hit) { return anyHitWrites(hit, leaf); }))
+      return true;
     return std::ranges::any_of(receivers_.edges(*site_), [&](const Edge* edge) {
       const bool counts = edge->role == role || (role == Role::closestHit && edge->role == Role::anyHit);
       return counts && writes(*edge, leaf, false);
@@ -116,6 +125,7 @@ class MemberRule {
   void forEachEnd(std::uint32_t leaf, const Edges& edges, const Hits& hits, const Use& use) const {
     const bool skipHits = site_->assumesHits && canWrite(leaf, Role::closestHit);
     const bool skipMisses = site_->assumesMisses && canWrite(leaf, Role::miss);
+    if (site_->mayRunNothing && (skipHits || skipMisses)) return;  // it can be that only these ends are executed
     for (const auto& entry : edges) {
       const Edge& edge = edgeOf(entry);
       if (edge.role != Role::miss && edge.role != Role::closestHit) continue;
@@ -139,8 +149,13 @@ class MemberRule {
     forEachEnd(leaf, receivers_.edges(*site_), receivers_.hits(*site_), use);
   }
 
+  bool hitsNoGroup() const {
+    return site_->trace->mayHit && !site_->mayRunNothing && graph_.groups.hitGroups.empty() &&
+           graph_.groups.groupsKnown;
+  }
+
   bool hasNonWriter(std::uint32_t leaf) const {
-    bool found = graph_.groups.hitGroups.empty() && graph_.groups.groupsKnown;
+    bool found = hitsNoGroup();
     forEachKindOfEnd(leaf, [&](bool, int written, const Edge*, HitGroupRay) {
       found = found || written != 2;
       return !found;
@@ -164,8 +179,7 @@ class MemberRule {
         result.push_back("a hit (closest-hit shaders are skipped)"), skipped = true;
       return result.size() < kMaxNamed;
     });
-    if (graph_.groups.hitGroups.empty() && graph_.groups.groupsKnown)
-      result.push_back(fmt::format("a hit (the {} has no hit groups)", graph_.groups.noun));
+    if (hitsNoGroup()) result.push_back(fmt::format("a hit (the {} has no hit groups)", graph_.groups.noun));
     if (result.size() > kMaxNamed) result.resize(kMaxNamed);
     return result;
   }
@@ -186,9 +200,9 @@ class MemberRule {
     for (const Edge& edge : site_->edges) {
       if (!hasNoResult(&edge)) continue;
       report_.add("Q104", graph_.location(*site_),
-                  fmt::format("the payload is read after this trace, but the {} writes none of the members that are "
+                  fmt::format("the payload is read after this {}, but the {} writes none of the members that are "
                               "read, so its hits have no effect",
-                              graph_.describe(edge)));
+                              site_->noun(), graph_.describe(edge)));
     }
   }
 
@@ -198,9 +212,9 @@ class MemberRule {
     const std::vector<std::string> missing = nonWriters(leaf);
     if (missing.empty()) return;
     addTo(groups,
-          {"", kReadAfter,
-           fmt::format(", but {} {} not write it, and it is not set before the trace", fmt::join(missing, " and "),
-                       missing.size() == 1 ? "does" : "do")},
+          {"", readAfter(),
+           fmt::format(", but {} {} not write it, and it is not set before the {}", fmt::join(missing, " and "),
+                       missing.size() == 1 ? "does" : "do", site_->noun())},
           leaf, reads.front());
   }
 
@@ -216,9 +230,9 @@ class MemberRule {
           readsOfUnwritten({*tracer_, payload_->id}, instruction(), {graph_.facts(edge), received(edge)->id}, leaf));
       if (reads.empty()) continue;
       addTo(groups,
-            {"", kReadAfter,
-             fmt::format(", but the {}{} does not write it, and it is not set before the trace", graph_.describe(edge),
-                         writes(edge, leaf, false) ? ", on some path," : "")},
+            {"", readAfter(),
+             fmt::format(", but the {}{} does not write it, and it is not set before the {}", graph_.describe(edge),
+                         writes(edge, leaf, false) ? ", on some path," : "", site_->noun())},
             leaf, reads.front());
     }
   }
@@ -243,7 +257,8 @@ class MemberRule {
     if (reads.empty() || !hasOneKindOfWriter(leaf)) return;
     const std::span<const TraceSite> traces = graph_.tracesOf(site_->stage);
     const auto earlier = std::ranges::find_if(traces, [&](const TraceSite& other) {
-      return other.trace->payload == payload_->id && isSameRay(other) && canBeStale(*other.trace, leaf);
+      return other.trace->payload == payload_->id && isSameRay(other) && isOtherRay(other) &&
+             canBeStale(*other.trace, leaf);
     });
     if (earlier == traces.end()) return;
     if (earlier->trace == site_->trace) {
@@ -254,12 +269,44 @@ class MemberRule {
     }
     const std::vector<std::string> missing = nonWriters(leaf);
     addTo(groups,
-          {"", kReadAfter,
+          {"", readAfter(),
            fmt::format(", but {} {} not write it: it then has the value of the previous ray, because it is not set "
-                       "before {} trace",
+                       "before {} {}",
                        fmt::join(missing, " and "), missing.size() == 1 ? "does" : "do",
-                       earlier->trace == site_->trace ? "each" : "this")},
+                       earlier->trace == site_->trace ? "each" : "this", site_->noun())},
           leaf, reads.front());
+  }
+
+  std::string readAfter() const { return fmt::format(" is read after this {}", site_->noun()); }
+
+  // Of a search, whose reads come before an execution of the hit object: only any-hit shaders can have written.
+  void checkSearch() {
+    std::vector<LeafGroup> unwritten;
+    for (std::uint32_t leaf = 0; leaf < tracer_->leaves(payload_->id).count() && !site_->hits.empty(); ++leaf) {
+      std::vector<std::size_t> reads = tracer_->unguardedReads(instruction(), payload_->id, leaf);
+      std::erase_if(reads, [&](std::size_t i) { return !tracer_->accesses()[i].leaves.exact; });
+      if (reads.empty() || writtenBefore(leaf)) continue;
+      if (std::ranges::any_of(receivers_.edges(*site_), [&](const Edge* edge) {
+            return edge->role == Role::anyHit && writes(*edge, leaf, false);
+          }))
+        continue;
+      addTo(unwritten,
+            {"", readAfter(),
+             ", but no any-hit shader writes it, and closest-hit and miss shaders run only when the hit object is "
+             "executed"},
+            leaf, reads.front());
+    }
+    reportGroups("Q104", unwritten);
+  }
+
+  // True if the other trace, or the trace in an earlier iteration, fills the hit object again, so that its content differs.
+  bool isOtherRay(const TraceSite& other) const {
+    if (other.isSearch()) return false;  // its shaders at the end run later
+    if (!site_->isExecution()) return true;
+    const std::size_t ray = site_->trace->ray;
+    if (ray == spirv::Module::kNone) return false;
+    if (other.trace != site_->trace) return other.trace->ray != ray;
+    return spirv::canRunAfter(tracer_->module(), ray, instruction());
   }
 
   bool isSameRay(const TraceSite& other) const {
@@ -275,6 +322,9 @@ class MemberRule {
           return edge->role != Role::intersection && (!edge->exact || !hasSameType(*edge) || readsInput(*edge, leaf) ||
                                                       (edge->role == Role::anyHit && writes(*edge, leaf, false)));
         }))
+      return false;
+    if (site_->isExecution() &&
+        std::ranges::any_of(receivers_.hits(*site_), [&](HitGroupRay hit) { return anyHitWrites(hit, leaf); }))
       return false;
     int ofMiss = -1, ofHit = -1;
     bool clear = true;
@@ -293,6 +343,8 @@ class MemberRule {
     std::vector<std::size_t> kills = tracer_->writers(payload_->id, leaf);
     std::erase(kills, instruction());
     std::erase(kills, earlier.instruction);
+    for (const TraceSite& other : graph_.tracesOf(site_->stage))
+      if (other.isSearch()) std::erase(kills, other.trace->instruction);
     if (!paths.reaches(instruction(), kills)) return false;
     const auto position = tracer_->module().position(instruction());
     const spirv::ControlFlow& flow = tracer_->flow(position->function);
@@ -368,7 +420,7 @@ class MemberRule {
       if (all.size() != member.count()) continue;
       const std::vector<std::size_t> reads = tracer_->readsAfter(instruction(), payload_->id, leaf);
       report_.add("Q104", graph_.location(*site_),
-                  fmt::format("{} is read after this trace{}, but {}", nameOf(*payload_, leaves.names(all).front()),
+                  fmt::format("{}{}{}, but {}", nameOf(*payload_, leaves.names(all).front()), readAfter(),
                               lineText(reads.front()),
                               !written.contains(true)
                                   ? "no shader that the trace can run writes it, so it keeps its constant value"
@@ -485,7 +537,7 @@ class MemberRule {
       if (!overwritten || std::ranges::any_of(reads, keeps)) continue;
       const SourceLocation written = module.location(module.instructions()[a.instruction]);
       addTo(groups,
-            {"this trace uses the incoming payload: ",
+            {fmt::format("this {} uses the incoming payload: ", site_->noun()),
              fmt::format(", written in line {}, is overwritten by the {} before it is read", written.line,
                          graph_.describe(*writer)),
              ""},

@@ -103,7 +103,7 @@ void PayloadReceivers::addKinds(const PipelineGraph& graph) {
   for (std::size_t i = 0; i < graph.stages.size(); ++i) {
     std::vector<Use>& all = uses[i];
     std::ranges::sort(all);
-    all.erase(std::ranges::unique(all).begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     kindOfStage_.push_back(
         graph.mergesEqual ? known.try_emplace({classOf_[i], std::move(all)}, known.size()).first->second : i);
   }

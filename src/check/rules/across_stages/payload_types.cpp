@@ -26,10 +26,13 @@ struct Pair {
   const spirv::SharedVariable* received = nullptr;
   std::optional<std::string> difference;  // of their types; nullopt if they agree
   bool alternative = false;               // the site may run a shader instead that receives nothing
+  bool unsure = false;                    // the site may not run the shader at all
 };
 
 spirv::Id sentVariable(const TraceSite& site) { return site.trace->payload; }
 spirv::Id sentVariable(const CallSite& site) { return site.call->data; }
+bool mayRunNothing(const TraceSite& site) { return site.mayRunNothing; }
+bool mayRunNothing(const CallSite&) { return false; }
 
 // A miss index beyond the miss shaders that are given names a record without a shader, or of a shader that is not given.
 bool missesNone(const PipelineGraph& graph, const TraceSite& site) {
@@ -80,7 +83,8 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
       pairs.push_back(
           {i, edge, edges.receiver(*edge), sent, received,
            spirv::differenceOf(sender.module().types(), sent->type, receiver.module().types(), received->type),
-           edge->role == Role::miss ? silentMiss : edge->role == Role::callable && silentCall});
+           edge->role == Role::miss ? silentMiss : edge->role == Role::callable && silentCall,
+           mayRunNothing(sites[i])});
     }
   }
   return pairs;
@@ -93,6 +97,7 @@ class TypeErrors {
   TypeErrors(const PipelineGraph& graph, const std::vector<Pair>& pairs) : graph_(graph) {
     for (const Pair& pair : pairs) {
       if (pair.difference && pair.edge->exact) receiversOfExact_.insert(pair.receiver);
+      if (pair.alternative) silent_.insert(pair.site);
       if (pair.difference) continue;
       receivers_.insert(pair.receiver);
       senders_.insert({pair.site, pair.edge->role == Role::miss});
@@ -110,6 +115,9 @@ class TypeErrors {
     if (pair.edge->exact) return true;
     if (receiversOfExact_.contains(pair.receiver)) return false;  // that error is certain
     if (!graph_.error.empty()) return false;  // the other side can be a stage that cannot be analyzed
+    if (pair.unsure)
+      return !silent_.contains(pair.site) && !senders_.contains({pair.site, false}) &&
+             !senders_.contains({pair.site, true});
     const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
     // A pipeline can have groups that its table does not have, and a table can have records without a shader.
     const PipelineGroups& groups = graph_.groups;
@@ -125,6 +133,7 @@ class TypeErrors {
   bool isError(const Pair& pair, const Edge& edge) {
     if (!canBeError(pair)) return false;
     const PipelineGroups& groups = graph_.groups;
+    if (pair.unsure) return reportedSenders_.insert({pair.site, false}).second;
     if (pair.edge->exact || groups.groupsKnown || groups.tablesKnown) return true;
     const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
     if (!receiver && !sender) return true;
@@ -147,6 +156,7 @@ class TypeErrors {
 
   const PipelineGraph& graph_;
   std::set<std::size_t> receivers_, receiversOfExact_, receiversOfBoth_;  // Pair::receiver
+  std::set<std::size_t> silent_;                                          // sites with an alternative
   std::set<std::size_t> reported_;                                        // stages
   std::set<Sender> senders_, sendersOfBoth_, reportedSenders_;
 };
@@ -163,12 +173,14 @@ bool locationsDiffer(const spirv::StageFacts& sender, const Pair& pair) {
 // The ids and the words of the diagnostics for traces and for calls.
 struct Wording {
   std::string_view typeId, locationId;
-  std::string_view data;  // "the payload of this trace"
-  std::string_view site;  // "trace"
+  std::string_view data;  // "the payload"
 };
 
-constexpr Wording kPayloads{"Q101", "Q102", "the payload of this trace", "trace"};
-constexpr Wording kCallableData{"Q301", "Q303", "the data of this call", "call"};
+constexpr Wording kPayloads{"Q101", "Q102", "the payload"};
+constexpr Wording kCallableData{"Q301", "Q303", "the data"};
+
+std::string_view nounOf(const TraceSite& site) { return site.noun(); }
+std::string_view nounOf(const CallSite&) { return "call"; }
 
 // The declarations of both ends.
 std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineStage& sender, const Pair& pair) {
@@ -186,7 +198,7 @@ void reportPair(const PipelineGraph& graph, const Site& site, const Pair& pair, 
   const spirv::StageFacts& sender = graph.facts(site);
   const spirv::StageFacts& receiver = graph.facts(*pair.edge);
   report.add(wording.typeId, graph.location(site),
-             fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
+             fmt::format("{} of this {} is {}, but the {} expects {}: {}", wording.data, nounOf(site),
                          sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
                          receiver.module().types().describe(pair.received->type), *pair.difference),
              endsOf(graph, graph.stages[site.stage], pair));
@@ -235,8 +247,8 @@ void checkLocations(const PipelineGraph& graph, const std::vector<Site>& sites, 
     if (pair.difference || !pair.edge->exact || !locationsDiffer(graph.facts(site), pair)) continue;
     report.add(wording.locationId, graph.location(graph.stages[pair.edge->stage], pair.received->declaration),
                fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
-                           *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
-               {relatedTo(location, fmt::format("the {}", wording.site)),
+                           *pair.received->location, nounOf(site), location.file, location.line, *pair.sent->location),
+               {relatedTo(location, fmt::format("the {}", nounOf(site))),
                 relatedTo(graph.declarationOf(graph.stages[site.stage], *pair.sent),
                           fmt::format("location {} is sent", *pair.sent->location))});
   }
@@ -247,7 +259,8 @@ std::vector<RelatedLocation> firstTraceOf(const PipelineGraph& graph, const Pipe
   for (const TraceSite& site : graph.traces)
     for (const Edge& edge : site.edges)
       if (&graph.stages[edge.stage] == &stage)
-        return {relatedTo(graph.location(site), "this trace runs the shader with its own payload")};
+        return {
+            relatedTo(graph.location(site), fmt::format("this {} runs the shader with its own payload", site.noun()))};
   return {};
 }
 
@@ -271,9 +284,10 @@ std::string_view lastArgument(std::string_view text, std::size_t at) {
 bool hasRemovedTrace(const spirv::StageFacts& facts, const spirv::SharedVariable& payload) {
   if (!payload.location) return false;
   for (const auto& [file, text] : facts.module().sources()) {
-    constexpr std::string_view kTrace = "traceRayEXT";
-    for (std::size_t at = spirv::findToken(text, kTrace); at != text.npos; at = spirv::findToken(text, kTrace, at + 1))
-      if (lastArgument(text, at) == std::to_string(*payload.location)) return true;
+    for (const std::string_view call : {"traceRayEXT", "hitObjectTraceRayNV", "hitObjectExecuteShaderNV",
+                                        "hitObjectTraceRayEXT", "hitObjectExecuteShaderEXT"})
+      for (std::size_t at = spirv::findToken(text, call); at != text.npos; at = spirv::findToken(text, call, at + 1))
+        if (lastArgument(text, at) == std::to_string(*payload.location)) return true;
   }
   return false;
 }

@@ -95,6 +95,8 @@ bool dependsOnPixelOnly(const spirv::Module& module, Id value) {
 bool passesOn(const spirv::Module& module, const spirv::Instruction& i) {
   switch (i.op) {
     case Op::OpTraceRayKHR:
+    case Op::OpHitObjectTraceRayNV:
+    case Op::OpHitObjectExecuteShaderNV:
     case Op::OpExecuteCallableKHR:
     case Op::OpFunctionCall: return true;
     case Op::OpStore: {
@@ -155,13 +157,14 @@ class RandomSeeds {
 
   void checkTrace(const TraceSite& site) {
     const spirv::Module& module = graph_.facts(site).module();
-    const spirv::Instruction& trace = module.instructions()[site.trace->instruction];
+    const auto ray = graph_.ray(site);
+    if (!ray) return;
     const auto found = [&](const spirv::Instruction& i) {
       return isRandom(module, i) && dependsOnPixelOnly(module, i.result);
     };
     const spirv::Instruction* random = nullptr;
-    for (const std::size_t argument : {6u, 8u})
-      if (!random) random = spirv::findInSlice(module, trace.at(argument), found);
+    for (const Id argument : {ray->origin, ray->direction})
+      if (!random) random = spirv::findInSlice(module, argument, found);
     if (random) return add(site, *random);
     if (const spirv::Instruction* seed = seedOf(site)) add(site, *seed);
   }

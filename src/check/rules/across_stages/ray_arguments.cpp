@@ -28,11 +28,12 @@ class RayRule {
 
   void check(const TraceSite& site) {
     location_ = graph_.location(site);
+    checkFirstHit(site);
+    if (site.isExecution()) return;  // the search has the arguments
     for (const std::string& text : site.swapped) report_.add("Q508", location_, text);
     checkMask(*site.trace);
     checkInterval(site);
     if (site.swapped.empty()) checkDirection(site);
-    checkFirstHit(site);
     checkGeometry(site);
   }
 
@@ -80,8 +81,9 @@ class RayRule {
   void checkInterval(const TraceSite& site) {
     const spirv::StageFacts& facts = graph_.facts(site);
     const std::size_t at = site.trace->instruction;
-    const spirv::Instruction& call = facts.module().instructions()[at];
-    const spirv::Id tmin = call.at(7), tmax = call.at(9);
+    const auto ray = graph_.ray(site);
+    if (!ray) return;
+    const spirv::Id tmin = ray->tmin, tmax = ray->tmax;
     std::string text = invalid(facts.ranges().rangeAt(at, tmin), facts.ranges().rangeAt(at, tmax));
     if (text.empty()) {
       const DefaultRanges* defaults = graph_.defaults(site.stage);
@@ -97,7 +99,9 @@ class RayRule {
   void checkDirection(const TraceSite& site) {
     const spirv::StageFacts& facts = graph_.facts(site);
     const std::size_t at = site.trace->instruction;
-    const spirv::Id direction = facts.module().instructions()[at].at(8);
+    const auto ray = graph_.ray(site);
+    if (!ray) return;
+    const spirv::Id direction = ray->direction;
     const auto isZero = [&](const auto& rangeOf) {
       for (std::uint32_t c = 0; c < 3; ++c)
         if (rangeOf(c).constant() != 0.0) return false;

@@ -15,6 +15,7 @@
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
+#include "spirv/trace_instruction.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -51,8 +52,8 @@ bool isRayDirection(const spirv::Module& module, spirv::Id direction) {
                      spirv::loadsBuiltIn(module, *definition, spv::BuiltIn::ObjectRayDirectionKHR)))
     return true;
   for (const std::size_t user : module.users(direction)) {
-    const spirv::Instruction& i = module.instructions()[user];
-    if (i.op == Op::OpTraceRayKHR && i.at(8) == direction) return true;
+    const auto ray = spirv::rayOperands(module.instructions()[user]);
+    if (ray && ray->direction == direction) return true;
   }
   return false;
 }
@@ -60,8 +61,8 @@ bool isRayDirection(const spirv::Module& module, spirv::Id direction) {
 // False for a constant that no trace starts at: an offset from a point that was folded to 0.
 bool canBeOrigin(const spirv::Module& module, spirv::Id value) {
   return !module.isConstant(value) || std::ranges::any_of(module.users(value), [&](std::size_t user) {
-    const spirv::Instruction& trace = module.instructions()[user];
-    return trace.op == Op::OpTraceRayKHR && trace.at(6) == value;
+    const auto ray = spirv::rayOperands(module.instructions()[user]);
+    return ray && ray->origin == value;
   });
 }
 
@@ -145,9 +146,8 @@ bool canBeHitPosition(const spirv::Module& module, spirv::Id value) {
 
 // Returns "tmin 0" if the trace starts there, with the parameter whose default it is; empty if it does not, or if tmin
 // is unknown. `defaults` can be null.
-std::string zeroText(const spirv::ValueRanges& ranges, const DefaultRanges* defaults, const spirv::Module& module,
-                     std::size_t trace) {
-  const spirv::Id tmin = module.instructions()[trace].at(7);
+std::string zeroText(const spirv::ValueRanges& ranges, const DefaultRanges* defaults, std::size_t trace,
+                     spirv::Id tmin) {
   if (ranges.rangeAt(trace, tmin).constant() == 0.0) return "tmin 0";
   if (!defaults || defaults->at(trace, tmin).constant() != 0.0) return {};
   const std::string names = defaults->parameters({tmin});
@@ -171,13 +171,13 @@ std::vector<PayloadOrigin> payloadOrigins(const spirv::StageFacts& facts, const 
   const spirv::Module& module = facts.module();
   std::vector<PayloadOrigin> result;
   for (std::size_t i = 0; i < module.instructions().size(); ++i) {
-    const spirv::Instruction& trace = module.instructions()[i];
-    const std::string zero = trace.op == Op::OpTraceRayKHR ? zeroText(facts.ranges(), defaults, module, i) : "";
+    const auto ray = spirv::rayOperands(module.instructions()[i]);
+    const std::string zero = ray ? zeroText(facts.ranges(), defaults, i, ray->tmin) : "";
     if (zero.empty()) continue;
     const auto isMember = [&](const spirv::Instruction& value) {
       return value.op == Op::OpLoad && storedIn(module, value.at(0), spv::StorageClass::RayPayloadKHR);
     };
-    const spirv::Instruction* load = findChoice(module, trace.at(6), isMember);
+    const spirv::Instruction* load = findChoice(module, ray->origin, isMember);
     if (!load) continue;
     const spirv::Access access = module.access(load->at(0));
     if (!access.indices.empty() && !access.indices[0]) continue;
@@ -240,7 +240,7 @@ void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, StoringS
         const auto [stores, isNew] = storing.try_emplace({edge.stage, origin.member}, false);
         if (isNew) stores->second = storesHitPosition(graph.facts(edge).module(), origin.member);
         if (!stores->second) continue;
-        const SourceLocation location = module.location(module.instructions()[origin.trace], "traceRayEXT");
+        const SourceLocation location = spirv::traceLocation(module, module.instructions()[origin.trace]);
         report.add("Q705", graph.location(graph.stages[stage], location),
                    fmt::format("the ray starts with {} at the hit position that the {} stores in the payload; "
                                "because of rounding it can hit the surface that it leaves",
@@ -254,10 +254,11 @@ void checkOrigins(const spirv::Module& module, const spirv::ValueRanges& ranges,
                   Report& report) {
   for (std::size_t i = 0; i < module.instructions().size(); ++i) {
     const spirv::Instruction& trace = module.instructions()[i];
-    if (trace.op != Op::OpTraceRayKHR || !canBeHitPosition(module, trace.at(6))) continue;
-    if (const std::string zero = zeroText(ranges, defaults, module, i); !zero.empty())
+    const auto ray = spirv::rayOperands(trace);
+    if (!ray || !canBeHitPosition(module, ray->origin)) continue;
+    if (const std::string zero = zeroText(ranges, defaults, i, ray->tmin); !zero.empty())
       report.addOncePerLine(
-          "Q705", module.location(trace, "traceRayEXT"),
+          "Q705", spirv::traceLocation(module, trace),
           fmt::format("the ray starts with {} at a hit position; because of rounding it can hit the surface that it "
                       "leaves",
                       zero));

@@ -94,7 +94,7 @@ class TraceChains {
     std::uint64_t below = 0;
     for (const TraceSite& site : graph_.tracesOf(stage)) {
       std::uint32_t depth = 1;
-      Step step{site.edges.empty() ? nullptr : &site, stage};
+      Step step{site.edges.empty() && !site.isSearch() ? nullptr : &site, stage};
       for (const Edge& edge : site.edges) {
         below = std::max(below, bytesOf(edge));
         if (!traces(edge.role)) continue;
@@ -132,7 +132,7 @@ class TraceChains {
 
   // If it is unknown which of the shaders runs, the chain has at least the length of the shortest one.
   void addAssumed(const TraceSite& site, Role role, std::uint32_t& depth, Step& step) const {
-    if (role == Role::miss ? !site.assumesMisses : !site.assumesHits) return;
+    if (site.mayRunNothing || (role == Role::miss ? !site.assumesMisses : !site.assumesHits)) return;
     const auto is = [&](const Edge& edge) { return edge.role == role; };
     const auto count = std::ranges::count_if(site.edges, is);
     const std::size_t all = role == Role::miss ? graph_.groups.misses.size() : site.hits.size();

@@ -172,8 +172,9 @@ class SpaceRules {
       case Op::OpFSub: return checkPair(i, i.at(0), i.at(1), "difference", "");
       case Op::OpDot: return checkPair(i, i.at(0), i.at(1), "dot product", "dot");
       case Op::OpTraceRayKHR:
-        checkTraced(i, i.at(6), "origin");
-        checkTraced(i, i.at(8), "direction");
+      case Op::OpHitObjectTraceRayNV:
+        checkTraced(i, spirv::rayOperands(i)->origin, "origin");
+        checkTraced(i, spirv::rayOperands(i)->direction, "direction");
         return;
       case Op::OpExtInst: return checkExtended(i);
       default: return;
@@ -221,16 +222,18 @@ class SpaceRules {
 
   bool isTraced(Id value) const {
     return std::ranges::any_of(module_.users(value), [&](std::size_t user) {
-      const spirv::Instruction& trace = module_.instructions()[user];
-      return trace.op == Op::OpTraceRayKHR && trace.at(8) == value;
+      const auto ray = spirv::rayOperands(module_.instructions()[user]);
+      return ray && ray->direction == value;
     });
   }
 
   void checkTraced(const spirv::Instruction& trace, Id value, std::string_view argument) {
     const SpaceTag tag = tags_.of(value);
     if (!tag.geometric() || !tag.whole() || tag.space == Space::world || !differs(tag)) return;
-    add("Q709", trace, "traceRayEXT",
-        fmt::format("the {} of the ray is {}, but traceRayEXT expects world space", argument, describe(tag)));
+    const bool whole = trace.op == Op::OpTraceRayKHR;
+    add("Q709", trace, whole ? "traceRayEXT" : "hitObjectTraceRayNV",
+        fmt::format("the {} of the ray is {}, but {} expects world space", argument, describe(tag),
+                    whole ? "traceRayEXT" : "the trace"));
   }
 
   const PipelineSpaces& spaces_;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "spirv/trace_instruction.h"
+
 namespace quintet::check {
 namespace {
 
@@ -23,7 +25,7 @@ struct Store {
 };
 
 // The paths through a shader that do not write the leaf.
-struct Path {
+struct UnwrittenPath {
   std::map<std::uint32_t, Store> stores;  // to other leaves, as far as known
   Blocks branches;                        // that decide whether the shader takes it
 };
@@ -44,7 +46,7 @@ class UnwrittenPaths {
     start_ = entry->blocks[0].first;
     function_ = shader_.module().position(start_)->function;
     writers_ = shader_.writers(received_, leaf_);
-    Path path;
+    UnwrittenPath path;
     if (!addControllers(writers_, path.branches) || !independent(path.branches)) return {};
     findStores();
     for (const auto& [leaf, stores] : stores_)
@@ -87,7 +89,7 @@ class UnwrittenPaths {
   }
 
   // Returns the paths among `path` on which the store is the last one to its leaf; nullopt if there may be none.
-  std::optional<Path> through(const Path& path, std::uint32_t leaf, const Store& store) const {
+  std::optional<UnwrittenPath> through(const UnwrittenPath& path, std::uint32_t leaf, const Store& store) const {
     std::vector<std::size_t> others = shader_.writers(received_, leaf);
     std::erase(others, store.instruction);
     std::vector<std::size_t> kills = others;
@@ -100,7 +102,7 @@ class UnwrittenPaths {
     if (!shader_.pathsAfter(start_).reaches(store.instruction, writers_) ||
         std::ranges::none_of(flow().function().blocks, endsAt))
       return {};
-    Path result = path;
+    UnwrittenPath result = path;
     result.stores[leaf] = store;
     others.push_back(store.instruction);
     if (!addControllers(others, result.branches) || !independent(result.branches)) return {};
@@ -134,13 +136,13 @@ class UnwrittenPaths {
     return true;
   }
 
-  std::vector<std::size_t> readsOn(const Path& path) const {
+  std::vector<std::size_t> readsOn(const UnwrittenPath& path) const {
     return tracer_.unguardedReads(trace_, sent_, leaf_,
                                   [&](const spirv::Guard& guard) { return !holdsOn(path, guard); });
   }
 
   // True if the condition holds on some of the paths.
-  bool holdsOn(const Path& path, const spirv::Guard& guard) const {
+  bool holdsOn(const UnwrittenPath& path, const spirv::Guard& guard) const {
     if (!guard.holds) return false;
     const auto [known, isNew] = leavesOf_.try_emplace(guard.condition);
     if (isNew) known->second = leavesOf(guard.condition);
@@ -169,7 +171,7 @@ class UnwrittenPaths {
   }
 
   // True if the stored values are not all constant, and do not depend on what the branches depend on.
-  bool canVary(const Path& path, const std::set<std::uint32_t>& leaves) const {
+  bool canVary(const UnwrittenPath& path, const std::set<std::uint32_t>& leaves) const {
     std::set<Id> ofBranches;
     for (const std::size_t block : path.branches) ofBranches.merge(sourcesOf(flow().condition(block)));
     bool constant = true;
@@ -188,11 +190,13 @@ class UnwrittenPaths {
     const auto position = module.position(module.definitionIndex(condition));
     if (!position) return {};
     std::set<std::size_t> loads;
-    (void)spirv::dependsOnDataOrControl(module, tracer_.flow(position->function), condition, [&](const auto& i) {
-      if (i.op == Op::OpLoad && module.access(i.at(0)).variable == sent_)
-        loads.insert(module.definitionIndex(i.result));
-      return false;
-    });
+    const bool ofHitObject =
+        spirv::dependsOnDataOrControl(module, tracer_.flow(position->function), condition, [&](const auto& i) {
+          if (i.op == Op::OpLoad && module.access(i.at(0)).variable == sent_)
+            loads.insert(module.definitionIndex(i.result));
+          return spirv::queriesHitObject(module, i);
+        });
+    if (ofHitObject) return {};  // it says whether there is a hit
     std::set<std::uint32_t> leaves;
     const auto& accesses = tracer_.accesses();
     for (std::size_t a = 0; a < accesses.size(); ++a) {
@@ -229,10 +233,12 @@ class UnwrittenPaths {
 
   // Values of gl_HitTEXT: the ends of the interval of the trace, which hits practically never have exactly.
   std::vector<double> hitDistances() const {
-    const spirv::Instruction& call = tracer_.module().instructions()[trace_];
-    const spirv::ValueRange tmin = tracer_.ranges().rangeAt(trace_, call.at(7));
-    const spirv::ValueRange tmax = tracer_.ranges().rangeAt(trace_, call.at(9));
     constexpr float kMost = std::numeric_limits<float>::max();
+    const auto trace = std::ranges::find(tracer_.traces(), trace_, &spirv::TraceFacts::instruction);
+    if (trace == tracer_.traces().end() || trace->ray == spirv::Module::kNone) return {0.0, double{kMost}};
+    const spirv::RayOperands ray = *spirv::rayOperands(tracer_.module().instructions()[trace->ray]);
+    const spirv::ValueRange tmin = tracer_.ranges().rangeAt(trace->ray, ray.tmin);
+    const spirv::ValueRange tmax = tracer_.ranges().rangeAt(trace->ray, ray.tmax);
     const float low = static_cast<float>(std::clamp(tmin.min, 0.0, double{kMost}));
     const float high = static_cast<float>(std::clamp(tmax.max, 0.0, double{kMost}));
     return {std::nextafter(low, kMost), std::nextafter(high, 0.0f)};

@@ -6,6 +6,7 @@
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
 #include "spirv/same_value.h"
+#include "spirv/trace_instruction.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -64,13 +65,13 @@ bool keepsUnit(const spirv::Module& module, const spirv::Instruction& i) {
 
 void checkRayLengths(const spirv::Module& module, Report& report) {
   for (const spirv::Instruction& trace : module.instructions()) {
-    if (trace.op != Op::OpTraceRayKHR) continue;
-    const Id direction = trace.at(8);
+    const auto ray = spirv::rayOperands(trace);
+    if (!ray) continue;
     const spirv::Instruction* length = spirv::findInSlice(
-        module, trace.at(9), [&](const spirv::Instruction& i) { return isLengthOf(module, i, direction); },
+        module, ray->tmax, [&](const spirv::Instruction& i) { return isLengthOf(module, i, ray->direction); },
         [&](const spirv::Instruction& i) { return !keepsUnit(module, i); });
     if (!length) continue;
-    SourceLocation location = module.location(trace, "traceRayEXT");
+    SourceLocation location = spirv::traceLocation(module, trace);
     if (isLibrary(location)) location = module.location(*length);
     report.addOncePerLine("Q514", location,
                           "tmax is the length of the direction, but t is in units of that length, so the ray ends at "

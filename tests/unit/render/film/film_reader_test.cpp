@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "render/film/film_file.h"
 #include "render/film/fixed_sum.h"
 #include "temp_folder.h"
 
