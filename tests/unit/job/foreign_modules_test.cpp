@@ -324,11 +324,12 @@ TEST_P(EngineShaders, MistakesAreReportedOnce) {
   }
 }
 
-// The same pipeline and its mistakes with the cross-vendor extension.
+// The same pipeline with the cross-vendor extension, and its mistakes of payloads.
 TEST(ForeignModules, PathsAreReorderedWithTheExtExtension) {
   const EnginePipeline correct(kEngines / "reordered_paths");
   for (const bool described : {true, false}) EXPECT_THAT(correct.found(described, true), IsEmpty());
   for (const EnginePipeline::Mistake& mistake : correct.mistakes()) {
+    if (!mistake.found.starts_with("Q101") && !mistake.found.starts_with("Q104")) continue;
     EnginePipeline pipeline = correct;
     pipeline.make(mistake);
     EXPECT_THAT(pipeline.found(true, true), ElementsAre(mistake.found)) << mistake.file << ": " << mistake.to;
