@@ -32,7 +32,7 @@ set(QUINTET_LONG_SUITES api.ApiExplanation
   gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
   gpu.LampBehindPanes gpu.PaneWeights gpu.PixelExplainer gpu.SessionEdits gpu.SessionExplains gpu.SolidAlpha gpu.SolidFarSide
   gpu.SolidGlass gpu.SolidLight
-  unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.GltfFuzz unit.LectureFuzz
+  unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.ForeignModules unit.GltfFuzz unit.LectureFuzz
   unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.ProgramFuzz)
 
 # Suites that measure the time of a launch and therefore run alone.

@@ -734,7 +734,8 @@ TEST(LayerCost, DISABLED_PrintsTimesOfManyHitGroups) {
 struct LoadedDriver : testing::Environment {
   VkInstance instance = VK_NULL_HANDLE;
   void SetUp() override {
-    const VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, nullptr, 0, nullptr, 0, nullptr};
+    const VkInstanceCreateInfo info{
+        VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, nullptr, 0, nullptr, 0, nullptr};
     vkCreateInstance(&info, nullptr, &instance);
   }
   void TearDown() override { vkDestroyInstance(instance, nullptr); }
