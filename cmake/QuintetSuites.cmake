@@ -25,15 +25,19 @@ endif()
 set(QUINTET_UNOPTIMIZED_LABELS gpu api)
 set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
-# The longest suites: those that compare many samples with integrals, for every lobe, solid or stack of panes, the ones that
-# explain samples or apply every kind of edit, the coverage of error estimates, those that check all built-in programs or
-# programs with a mistake of each kind, and thousands of random inputs. 'make test' leaves them to `make test SUITES=long`.
+# The longest suites: those that compare many samples with integrals or images with closed forms, for every lobe, solid, medium or
+# stack of panes, the ones that explain samples or apply every kind of edit, the coverage of error estimates, those that check all
+# built-in programs or programs with a mistake of each kind, and thousands of random inputs. 'make test' leaves them to
+# `make test SUITES=long`.
 set(QUINTET_LONG_SUITES api.ApiExplanation
-  gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfSampling gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
-  gpu.LampBehindPanes gpu.PaneWeights gpu.PixelExplainer gpu.SessionEdits gpu.SessionExplains gpu.SolidAlpha gpu.SolidFarSide
-  gpu.SolidGlass gpu.SolidLight
-  unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.ForeignModules unit.GltfFuzz unit.LectureFuzz
-  unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.ProgramFuzz)
+  gpu.AnisotropyRender gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfReference gpu.BsdfSampling gpu.CameraInMedium
+  gpu.Csg gpu.DiffuseTransmission gpu.DispersionRender gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
+  gpu.IridescenceRender gpu.LampBehindABubble gpu.LampBehindPanes gpu.LampInABubble gpu.LightTreeDevice gpu.NestedMedia
+  gpu.OpenMedium gpu.PaneWeights gpu.PixelExplainer gpu.Scattering gpu.SessionEdits gpu.SessionExplains gpu.SheenRender
+  gpu.SolidAlpha gpu.SolidFarSide gpu.SolidGlass gpu.SolidLight gpu.Solids gpu.TriangleLight
+  unit.BuiltInPrograms unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.ForeignModules
+  unit.GltfFuzz unit.LectureFuzz unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.Procedural
+  unit.ProgramFuzz unit.UntilError)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
