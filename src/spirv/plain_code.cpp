@@ -178,11 +178,7 @@ std::optional<std::vector<std::uint32_t>> withoutNewExtensions(std::span<const s
                                                   "SPV_KHR_storage_buffer_storage_class"};
   std::vector<std::uint32_t> result = headerOf(words);
   for (const RawInstruction& i : RawInstructions(words)) {
-    if (i.op == spv::Op::OpExtension) {
-      const auto* text = reinterpret_cast<const char*>(i.operands.data());
-      const std::string_view padded(text, i.operands.size() * sizeof(std::uint32_t));
-      if (std::ranges::find(kOld, padded.substr(0, padded.find('\0'))) == kOld.end()) continue;
-    }
+    if (i.op == spv::Op::OpExtension && std::ranges::find(kOld, literalText(i.operands)) == kOld.end()) continue;
     append(result, i.words);
   }
   if (result.size() == words.size()) return {};

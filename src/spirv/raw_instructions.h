@@ -10,6 +10,7 @@
 #include <iterator>
 #include <span>
 #include <spirv/unified1/spirv.hpp11>
+#include <string_view>
 #include <vector>
 
 namespace quintet::spirv {
@@ -67,6 +68,12 @@ inline std::vector<std::uint32_t> headerOf(Words words) {
 
 inline void append(std::vector<std::uint32_t>& result, Words words) {
   result.insert(result.end(), words.begin(), words.end());
+}
+
+// The text of operands that are a literal string and nothing else. It refers to the words.
+inline std::string_view literalText(Words operands) {
+  const std::string_view padded(reinterpret_cast<const char*>(operands.data()), operands.size_bytes());
+  return padded.substr(0, padded.find('\0'));
 }
 
 }  // namespace quintet::spirv

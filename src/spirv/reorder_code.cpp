@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <initializer_list>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -68,10 +69,16 @@ std::optional<Op> sameInNv(std::uint32_t op) {
   return found == kSame.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::string_view literal(Words words) {
-  const std::string_view padded(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t));
-  return padded.substr(0, padded.find('\0'));
-}
+// Instructions of both extensions with the time of motion blur, and those without.
+struct MotionForm {
+  Op motion, plain;
+  std::size_t time, operands;  // index of the time, and number of operands with it
+};
+constexpr MotionForm kMotionForms[] = {
+    {Op::OpHitObjectTraceRayMotionNV, Op::OpHitObjectTraceRayNV, kRayOperands, kRayOperands + 2},
+    {Op::OpHitObjectRecordHitMotionNV, Op::OpHitObjectRecordHitNV, 12, 14},
+    {Op::OpHitObjectRecordHitWithIndexMotionNV, Op::OpHitObjectRecordHitWithIndexNV, 11, 13},
+    {Op::OpHitObjectRecordMissMotionNV, Op::OpHitObjectRecordMissNV, 6, 7}};
 
 class Rewriter {
  public:
@@ -101,29 +108,11 @@ class Rewriter {
     put(op, rest);
   }
 
-  // The instructions of both extensions that have the time of motion blur.
   bool rewriteMotion(const RawInstruction& i) {
-    const auto has = [&](std::size_t count) { return i.operands.size() == count; };
-    constexpr std::size_t kTimeOfHit = 12, kTimeOfIndexedHit = 11, kTimeOfMiss = 6;
-    switch (i.op) {
-      case Op::OpHitObjectTraceRayMotionNV:
-        if (!has(kRayOperands + 2)) return false;
-        putWithout(Op::OpHitObjectTraceRayNV, i.operands, kRayOperands);
-        return true;
-      case Op::OpHitObjectRecordHitMotionNV:
-        if (!has(kTimeOfHit + 2)) return false;
-        putWithout(Op::OpHitObjectRecordHitNV, i.operands, kTimeOfHit);
-        return true;
-      case Op::OpHitObjectRecordHitWithIndexMotionNV:
-        if (!has(kTimeOfIndexedHit + 2)) return false;
-        putWithout(Op::OpHitObjectRecordHitWithIndexNV, i.operands, kTimeOfIndexedHit);
-        return true;
-      case Op::OpHitObjectRecordMissMotionNV:
-        if (!has(kTimeOfMiss + 1)) return false;
-        put(Op::OpHitObjectRecordMissNV, i.operands.first(kTimeOfMiss));
-        return true;
-      default: return false;
-    }
+    const auto form = std::ranges::find(kMotionForms, i.op, &MotionForm::motion);
+    if (form == std::end(kMotionForms) || i.operands.size() != form->operands) return false;
+    putWithout(form->plain, i.operands, form->time);
+    return true;
   }
 
   bool rewriteExt(const RawInstruction& i) {
@@ -199,7 +188,7 @@ class Rewriter {
   }
 
   bool rewriteExtension(const RawInstruction& i) {
-    if (literal(i.operands) != kExtension) return false;
+    if (literalText(i.operands) != kExtension) return false;
     std::vector<std::uint32_t> text(kKnownExtension.size() / sizeof(std::uint32_t) + 1, 0);
     std::memcpy(text.data(), kKnownExtension.data(), kKnownExtension.size());
     put(i.op, text);

@@ -8,10 +8,12 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include <vulkan/vulkan.h>
+#include <spirv/unified1/spirv.hpp11>
 
 #include "loader_interface.h"
 
@@ -39,61 +41,44 @@ VKAPI_ATTR VkResult VKAPI_CALL buildStructures(VkDevice, VkDeferredOperationKHR,
   return VK_SUCCESS;
 }
 
-// The execution model of a module with hit objects; 0 for any other module.
-std::uint32_t modelWithHitObjects(const VkShaderModuleCreateInfo& info) {
-  constexpr std::uint32_t kCapability = 17, kEntryPoint = 15, kReorder = 5383;
+constexpr std::uint32_t word(spv::Op op, std::uint32_t count) { return count << 16 | static_cast<std::uint32_t>(op); }
+
+// The execution model of a module with hit objects; nullopt for any other module.
+std::optional<std::uint32_t> modelWithHitObjects(const VkShaderModuleCreateInfo& info) {
   constexpr std::size_t kHeader = 5;
-  std::uint32_t model = 0;
+  std::optional<std::uint32_t> model;
   bool reorders = false;
   const std::size_t count = info.codeSize / sizeof(std::uint32_t);
   for (std::size_t at = kHeader; at + 1 < count && info.pCode[at] >> 16 != 0; at += info.pCode[at] >> 16) {
-    const std::uint32_t op = info.pCode[at] & 0xFFFFu;
-    if (op == kCapability && info.pCode[at + 1] == kReorder) reorders = true;
-    if (op == kEntryPoint) model = info.pCode[at + 1];
+    const auto op = static_cast<spv::Op>(info.pCode[at] & 0xFFFFu);
+    const std::uint32_t operand = info.pCode[at + 1];
+    if (op == spv::Op::OpCapability && operand == std::uint32_t(spv::Capability::ShaderInvocationReorderNV))
+      reorders = true;
+    if (op == spv::Op::OpEntryPoint) model = operand;
   }
-  return reorders ? model : 0;
+  return reorders ? model : std::nullopt;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
                                                   const VkAllocationCallbacks* allocator, VkShaderModule* module) {
-  const std::uint32_t model = modelWithHitObjects(*info);
-  if (model == 0) return createModule(device, info, allocator, module);
-  // SPIR-V 1.5 of an empty main(): %1 is void, %2 its function type, %3 main, %4 the label.
-  const std::vector<std::uint32_t> empty{0x07230203,
-                                         0x00010500,
-                                         0,
-                                         5,
-                                         0,  // header
-                                         2u << 16 | 17u,
-                                         4479,  // OpCapability RayTracingKHR
-                                         6u << 16 | 10u,
-                                         0x5F565053,
-                                         0x5F52484B,
-                                         0x5F796172,
-                                         0x63617274,
-                                         0x676E69,  // OpExtension "SPV_KHR_ray_tracing"
-                                         3u << 16 | 14u,
-                                         0,
-                                         1,  // OpMemoryModel Logical GLSL450
-                                         5u << 16 | 15u,
-                                         model,
-                                         3,
-                                         0x6E69616D,
-                                         0,  // OpEntryPoint "main"
-                                         2u << 16 | 19u,
-                                         1,  // OpTypeVoid
-                                         3u << 16 | 33u,
-                                         2,
-                                         1,  // OpTypeFunction
-                                         5u << 16 | 54u,
-                                         1,
-                                         3,
-                                         0,
-                                         2,  // OpFunction
-                                         2u << 16 | 248u,
-                                         4,  // OpLabel
-                                         1u << 16 | 253u,
-                                         1u << 16 | 56u};  // OpReturn, OpFunctionEnd
+  const auto model = modelWithHitObjects(*info);
+  if (!model) return createModule(device, info, allocator, module);
+  // An empty main().
+  enum : std::uint32_t { kVoid = 1, kSignature, kMain, kLabel, kBound };
+  // clang-format off
+  const std::vector<std::uint32_t> empty{
+      spv::MagicNumber, 0x00010500, 0, kBound, 0,
+      word(spv::Op::OpCapability, 2), std::uint32_t(spv::Capability::RayTracingKHR),
+      word(spv::Op::OpExtension, 6), 0x5F565053, 0x5F52484B, 0x5F796172, 0x63617274, 0x00676E69,  // "SPV_KHR_ray_tracing"
+      word(spv::Op::OpMemoryModel, 3), std::uint32_t(spv::AddressingModel::Logical), std::uint32_t(spv::MemoryModel::GLSL450),
+      word(spv::Op::OpEntryPoint, 5), *model, kMain, 0x6E69616D, 0,  // "main"
+      word(spv::Op::OpTypeVoid, 2), kVoid,
+      word(spv::Op::OpTypeFunction, 3), kSignature, kVoid,
+      word(spv::Op::OpFunction, 5), kVoid, kMain, 0, kSignature,
+      word(spv::Op::OpLabel, 2), kLabel,
+      word(spv::Op::OpReturn, 1),
+      word(spv::Op::OpFunctionEnd, 1)};
+  // clang-format on
   VkShaderModuleCreateInfo replaced = *info;
   replaced.codeSize = empty.size() * sizeof(std::uint32_t);
   replaced.pCode = empty.data();

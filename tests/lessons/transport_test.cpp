@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "block_means.h"
+#include "harness.h"
 
 namespace quintet::test {
 namespace {
@@ -224,7 +225,8 @@ TEST(LessonNextEvent, BothTechniquesGiveTheDirectLight) {
       });
   BlockLimits exact;
   exact.relative = 0.015;
-  exact.absolute = 4e-3;  // the rays of some pixels meet the edges of the walls
+  // The rays of some pixels meet the edges of the walls, where GPUs find other hits than lavapipe and the host.
+  exact.absolute = testContext().info().software ? 2.8e-3 : 4e-3;
   expectBlocks(renderTransport("25_next_event", 4, {{"samples", "128"}}), reference, exact);
   BlockLimits noisy;
   noisy.relative = 0.06;

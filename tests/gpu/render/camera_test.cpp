@@ -117,7 +117,7 @@ TEST(Camera, TheLensIsAUniformDisk) {
     const double cumulant = -2 * std::pow(a, 4) / 15 - std::pow(h, 4) / 60 - std::pow(r, 4) / 16;
     for (std::size_t k = 0; k < 2; ++k) {
       const double second = squares[k] / sum;
-      EXPECT_NEAR(second, variance, 0.04 * variance) << distance << ", axis " << k;
+      EXPECT_NEAR(second, variance, 0.03 * variance) << distance << ", axis " << k;
       EXPECT_NEAR(fourth[k] / sum - 3 * second * second, cumulant, 0.15 * -cumulant + 0.05)
           << distance << ", axis " << k;
     }
