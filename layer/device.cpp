@@ -51,6 +51,9 @@ Device::Device(VkDevice device, VkPhysicalDevice physical, PFN_vkGetDeviceProcAd
   QUINTET_DEVICE_FUNCTIONS(QUINTET_LOAD)
 #undef QUINTET_LOAD
   if (!table.QueueSubmit2) table.QueueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(next(handle, "vkQueueSubmit2KHR"));
+  for (const char* name : {"vkCmdBindDescriptorSets2KHR", "vkCmdBindDescriptorSets2"})
+    if (const auto found = next(handle, name))
+      cmdBindDescriptorSets2 = reinterpret_cast<decltype(cmdBindDescriptorSets2)>(found);
   if (!table.GetDeviceBufferMemoryRequirements)
     table.GetDeviceBufferMemoryRequirements = reinterpret_cast<PFN_vkGetDeviceBufferMemoryRequirements>(
         next(handle, "vkGetDeviceBufferMemoryRequirementsKHR"));
@@ -120,6 +123,7 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     const VkRayTracingPipelineCreateInfoKHR& info = infos[i];
     PipelineCopy& copy = copies[i];
     copy.depth = info.maxPipelineRayRecursionDepth;
+    copy.descriptors = descriptors.countsOf(info.layout);
     const auto* flags = findInChain<Flags2>(info.pNext, kPipelineFlags2);
     copy.isLibrary = ((flags ? flags->flags : info.flags) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
     copy.stages.reserve(info.stageCount);
@@ -164,6 +168,8 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
       }
       const PipelineCopy& from = library->second->copy;
       copy.isComplete = copy.isComplete && from.isComplete;
+      for (const auto& [slot, length] : from.descriptors)
+        copy.descriptors[slot] = std::max(copy.descriptors[slot], length);
       const std::size_t first = copy.stages.size();
       copy.stages.insert(copy.stages.end(), from.stages.begin(), from.stages.end());
       for (GroupCopy group : from.groups) {
@@ -318,6 +324,7 @@ void Device::link(LinkedPipeline& pipeline) const {
   groups.hitRecords = check::HitRecords::byRecord;
   groups.tablesKnown = false;
   groups.declaredRecursion = std::max(1u, copy.depth);
+  groups.descriptorCounts = copy.descriptors;
   for (std::size_t g = 0; g < copy.groups.size(); ++g) {
     const GroupCopy& group = copy.groups[g];
     const auto nameAt = [&](const std::optional<std::size_t>& stage) {

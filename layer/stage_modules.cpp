@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -83,6 +84,7 @@ StageModules modulesOf(const std::vector<StageCopy>& stages) {
     if (source->summary) result.sources.insert(source->summary->sources.begin(), source->summary->sources.end());
   }
   result.recordBytes.resize(result.modules.size());
+  std::atomic<bool> indexByRecord = false;
   parallelFor(result.modules.size(), [&](std::size_t i) {
     const StageCopy& stage = stages[firstStage[i]];
     check::ModuleStage& module = result.modules[i];
@@ -91,8 +93,12 @@ StageModules modulesOf(const std::vector<StageCopy>& stages) {
       module = check::stageModule(module.name, *stage.words, {model, stage.entryPoint}, stage.values);
     else
       module = {module.name, *check::stageOf(model), {}, sourceOf[i]->problem};
-    if (const auto read = spirv::Module::read(module.spirv)) result.recordBytes[i] = spirv::shaderRecordBytes(*read);
+    if (const auto read = spirv::Module::read(module.spirv)) {
+      result.recordBytes[i] = spirv::shaderRecordBytes(*read);
+      if (spirv::indexesByRecord(*read)) indexByRecord = true;
+    }
   });
+  result.indexByRecord = indexByRecord;
   return result;
 }
 

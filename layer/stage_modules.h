@@ -21,6 +21,7 @@ struct StageCopy;
 struct StageModules {
   std::vector<check::ModuleStage> modules;
   std::vector<std::uint64_t> recordBytes;      // by module: of its shader record block
+  bool indexByRecord = false;                  // a module has an index that depends on the data of its record
   std::vector<std::size_t> ofStage;            // index in `modules`, by stage
   std::map<std::string, std::string> sources;  // texts by file
 
