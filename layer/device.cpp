@@ -189,8 +189,8 @@ void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pi
     auto pipeline = std::make_shared<LinkedPipeline>();
     pipeline->copy = std::move(copies[i]);
     pipeline->handle = pipelines[i];
-    if (!pipeline->copy.isLibrary && pipeline->copy.isComplete)
-      pipeline->task = instance->worker.add([this, pipeline] {
+    if (!pipeline->copy.isLibrary && pipeline->copy.isComplete) {
+      const auto check = [this, pipeline] {
         try {
           link(*pipeline);
         } catch (const std::exception& error) {  // of the host, such as std::bad_alloc
@@ -199,7 +199,9 @@ void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pi
           d.text = fmt::format("the pipeline is not checked: {}", error.what());
           pipeline->result.diagnostics = {d};
         }
-      });
+      };
+      pipeline->task = instance->settings.wait ? instance->worker.runNow(check) : instance->worker.add(check);
+    }
     const std::scoped_lock lock(mutex_);
     pipelines_[pipelines[i]] = pipeline;
     if (pipeline->task) undelivered_ = true;
@@ -265,7 +267,7 @@ void Device::forgetCommands(VkCommandBuffer commands) {
 
 void Device::deliver(LinkedPipeline& pipeline) {
   if (!pipeline.task) return;
-  instance->worker.wait(*pipeline.task);
+  instance->worker.wait(pipeline.task);
   {
     const std::scoped_lock lock(pipeline.mutex);
     if (pipeline.delivered) return;
@@ -306,9 +308,10 @@ void Device::report(std::vector<Diagnostic> diagnostics, LinkedPipeline& pipelin
 }
 
 // Runs on the worker's thread.
-void Device::link(LinkedPipeline& pipeline) const {
+void Device::link(LinkedPipeline& pipeline) {
   const PipelineCopy& copy = pipeline.copy;
-  pipeline.stages = modulesOf(copy.stages);
+  pipeline.stages = modulesOf(copy.stages, cache_,
+                              [this](std::size_t count, const auto& body) { instance->worker.loop(count, body); });
   std::vector<Diagnostic> notes;
   for (const check::ModuleStage& module : pipeline.stages.modules) {
     if (module.problem.empty()) continue;

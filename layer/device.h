@@ -118,8 +118,9 @@ class Device {
     const VkPipeline* pipelines = nullptr;
   };
 
-  void link(LinkedPipeline& pipeline) const;
+  void link(LinkedPipeline& pipeline);
 
+  ModuleCache cache_;
   std::mutex mutex_;
   std::unordered_map<VkShaderModule, Words> modules_;
   std::unordered_map<std::string, Words> identifiers_;

@@ -7,12 +7,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "check/modules/stage_module.h"
 #include "check/pipeline_graph.h"
+#include "module_cache.h"
 
 namespace quintet::layer {
 
@@ -28,7 +30,9 @@ struct StageModules {
   const check::ModuleStage& of(std::size_t stage) const { return modules[ofStage[stage]]; }
 };
 
-StageModules modulesOf(const std::vector<StageCopy>& stages);
+// `loop(count, body)` calls the body for each number below the count.
+using ParallelLoop = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
+StageModules modulesOf(const std::vector<StageCopy>& stages, ModuleCache& cache, const ParallelLoop& loop);
 
 }  // namespace quintet::layer
 #endif
