@@ -51,6 +51,9 @@ Device::Device(VkDevice device, VkPhysicalDevice physical, PFN_vkGetDeviceProcAd
   QUINTET_DEVICE_FUNCTIONS(QUINTET_LOAD)
 #undef QUINTET_LOAD
   if (!table.QueueSubmit2) table.QueueSubmit2 = reinterpret_cast<PFN_vkQueueSubmit2>(next(handle, "vkQueueSubmit2KHR"));
+  for (const char* name : {"vkCmdBindDescriptorSets2KHR", "vkCmdBindDescriptorSets2"})
+    if (const auto found = next(handle, name))
+      cmdBindDescriptorSets2 = reinterpret_cast<decltype(cmdBindDescriptorSets2)>(found);
   if (!table.GetDeviceBufferMemoryRequirements)
     table.GetDeviceBufferMemoryRequirements = reinterpret_cast<PFN_vkGetDeviceBufferMemoryRequirements>(
         next(handle, "vkGetDeviceBufferMemoryRequirementsKHR"));
@@ -120,6 +123,7 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
     const VkRayTracingPipelineCreateInfoKHR& info = infos[i];
     PipelineCopy& copy = copies[i];
     copy.depth = info.maxPipelineRayRecursionDepth;
+    copy.descriptors = descriptors.countsOf(info.layout);
     const auto* flags = findInChain<Flags2>(info.pNext, kPipelineFlags2);
     copy.isLibrary = ((flags ? flags->flags : info.flags) & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0;
     copy.stages.reserve(info.stageCount);
@@ -164,6 +168,8 @@ std::vector<PipelineCopy> Device::copy(std::uint32_t count, const VkRayTracingPi
       }
       const PipelineCopy& from = library->second->copy;
       copy.isComplete = copy.isComplete && from.isComplete;
+      for (const auto& [slot, length] : from.descriptors)
+        copy.descriptors[slot] = std::max(copy.descriptors[slot], length);
       const std::size_t first = copy.stages.size();
       copy.stages.insert(copy.stages.end(), from.stages.begin(), from.stages.end());
       for (GroupCopy group : from.groups) {
@@ -183,8 +189,8 @@ void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pi
     auto pipeline = std::make_shared<LinkedPipeline>();
     pipeline->copy = std::move(copies[i]);
     pipeline->handle = pipelines[i];
-    if (!pipeline->copy.isLibrary && pipeline->copy.isComplete)
-      pipeline->task = instance->worker.add([this, pipeline] {
+    if (!pipeline->copy.isLibrary && pipeline->copy.isComplete) {
+      const auto check = [this, pipeline] {
         try {
           link(*pipeline);
         } catch (const std::exception& error) {  // of the host, such as std::bad_alloc
@@ -193,7 +199,9 @@ void Device::addPipelines(std::vector<PipelineCopy> copies, const VkPipeline* pi
           d.text = fmt::format("the pipeline is not checked: {}", error.what());
           pipeline->result.diagnostics = {d};
         }
-      });
+      };
+      pipeline->task = instance->settings.wait ? instance->worker.runNow(check) : instance->worker.add(check);
+    }
     const std::scoped_lock lock(mutex_);
     pipelines_[pipelines[i]] = pipeline;
     if (pipeline->task) undelivered_ = true;
@@ -259,7 +267,7 @@ void Device::forgetCommands(VkCommandBuffer commands) {
 
 void Device::deliver(LinkedPipeline& pipeline) {
   if (!pipeline.task) return;
-  instance->worker.wait(*pipeline.task);
+  instance->worker.wait(pipeline.task);
   {
     const std::scoped_lock lock(pipeline.mutex);
     if (pipeline.delivered) return;
@@ -300,9 +308,10 @@ void Device::report(std::vector<Diagnostic> diagnostics, LinkedPipeline& pipelin
 }
 
 // Runs on the worker's thread.
-void Device::link(LinkedPipeline& pipeline) const {
+void Device::link(LinkedPipeline& pipeline) {
   const PipelineCopy& copy = pipeline.copy;
-  pipeline.stages = modulesOf(copy.stages);
+  pipeline.stages = modulesOf(copy.stages, cache_,
+                              [this](std::size_t count, const auto& body) { instance->worker.loop(count, body); });
   std::vector<Diagnostic> notes;
   for (const check::ModuleStage& module : pipeline.stages.modules) {
     if (module.problem.empty()) continue;
@@ -318,6 +327,7 @@ void Device::link(LinkedPipeline& pipeline) const {
   groups.hitRecords = check::HitRecords::byRecord;
   groups.tablesKnown = false;
   groups.declaredRecursion = std::max(1u, copy.depth);
+  groups.descriptorCounts = copy.descriptors;
   for (std::size_t g = 0; g < copy.groups.size(); ++g) {
     const GroupCopy& group = copy.groups[g];
     const auto nameAt = [&](const std::optional<std::size_t>& stage) {

@@ -19,6 +19,7 @@
 
 #include "check/check.h"
 #include "check/modules/table_check.h"
+#include "descriptor_layouts.h"
 #include "instance.h"
 #include "stage_modules.h"
 
@@ -44,7 +45,8 @@ struct GroupCopy {
 struct PipelineCopy {
   std::vector<StageCopy> stages;
   std::vector<GroupCopy> groups;
-  std::uint32_t depth = 0;  // maxPipelineRayRecursionDepth
+  std::uint32_t depth = 0;       // maxPipelineRayRecursionDepth
+  DescriptorCounts descriptors;  // of the layout, and of the layouts of libraries
   bool isLibrary = false;
   bool isComplete = true;  // false if a library is unknown, and with it some groups
 };
@@ -78,6 +80,9 @@ class Device {
   check::TableLimits tableLimits;
   check::DeviceLimits limits;
   VkPhysicalDeviceMemoryProperties memory{};
+  DescriptorLayouts descriptors;
+  // vkCmdBindDescriptorSets2 or its KHR alias; null if there is none.
+  void(VKAPI_PTR* cmdBindDescriptorSets2)(VkCommandBuffer, const BindDescriptorSetsInfo*) = nullptr;
 
   void addModule(VkShaderModule module, const VkShaderModuleCreateInfo& info);
   void removeModule(VkShaderModule module);
@@ -113,8 +118,9 @@ class Device {
     const VkPipeline* pipelines = nullptr;
   };
 
-  void link(LinkedPipeline& pipeline) const;
+  void link(LinkedPipeline& pipeline);
 
+  ModuleCache cache_;
   std::mutex mutex_;
   std::unordered_map<VkShaderModule, Words> modules_;
   std::unordered_map<std::string, Words> identifiers_;

@@ -19,6 +19,15 @@ namespace quintet::layer {
   X(DestroyDevice)                             \
   X(CreateShaderModule)                        \
   X(DestroyShaderModule)                       \
+  X(CreateDescriptorSetLayout)                 \
+  X(DestroyDescriptorSetLayout)                \
+  X(CreatePipelineLayout)                      \
+  X(DestroyPipelineLayout)                     \
+  X(AllocateDescriptorSets)                    \
+  X(FreeDescriptorSets)                        \
+  X(ResetDescriptorPool)                       \
+  X(DestroyDescriptorPool)                     \
+  X(CmdBindDescriptorSets)                     \
   X(CreateRayTracingPipelinesKHR)              \
   X(DestroyPipeline)                           \
   X(GetDeferredOperationResultKHR)             \

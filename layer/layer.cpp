@@ -98,6 +98,37 @@ VKAPI_ATTR void VKAPI_CALL getShaderModuleCreateInfoIdentifier(VkDevice handle, 
   device->addIdentifier(*info, *identifier);
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL createDescriptorSetLayout(VkDevice handle, const VkDescriptorSetLayoutCreateInfo* info,
+                                                         const VkAllocationCallbacks* allocator,
+                                                         VkDescriptorSetLayout* layout) {
+  const auto device = deviceOf(handle);
+  const VkResult result = device->table.CreateDescriptorSetLayout(handle, info, allocator, layout);
+  if (result == VK_SUCCESS) device->descriptors.addSetLayout(*layout, *info);
+  return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroyDescriptorSetLayout(VkDevice handle, VkDescriptorSetLayout layout,
+                                                      const VkAllocationCallbacks* allocator) {
+  const auto device = deviceOf(handle);
+  device->descriptors.removeSetLayout(layout);
+  device->table.DestroyDescriptorSetLayout(handle, layout, allocator);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createPipelineLayout(VkDevice handle, const VkPipelineLayoutCreateInfo* info,
+                                                    const VkAllocationCallbacks* allocator, VkPipelineLayout* layout) {
+  const auto device = deviceOf(handle);
+  const VkResult result = device->table.CreatePipelineLayout(handle, info, allocator, layout);
+  if (result == VK_SUCCESS) device->descriptors.addPipelineLayout(*layout, *info);
+  return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroyPipelineLayout(VkDevice handle, VkPipelineLayout layout,
+                                                 const VkAllocationCallbacks* allocator) {
+  const auto device = deviceOf(handle);
+  device->descriptors.removePipelineLayout(layout);
+  device->table.DestroyPipelineLayout(handle, layout, allocator);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL createRayTracingPipelines(VkDevice handle, VkDeferredOperationKHR operation,
                                                          VkPipelineCache cache, std::uint32_t count,
                                                          const VkRayTracingPipelineCreateInfoKHR* infos,
@@ -180,6 +211,54 @@ VKAPI_ATTR VkResult VKAPI_CALL queueSubmit2(VkQueue queue, std::uint32_t count, 
 
 // ---- Only with sbt=1
 
+VKAPI_ATTR VkResult VKAPI_CALL allocateDescriptorSets(VkDevice handle, const VkDescriptorSetAllocateInfo* info,
+                                                      VkDescriptorSet* sets) {
+  const auto device = deviceOf(handle);
+  const VkResult result = device->table.AllocateDescriptorSets(handle, info, sets);
+  if (result == VK_SUCCESS) device->descriptors.addSets(*info, sets);
+  return result;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL freeDescriptorSets(VkDevice handle, VkDescriptorPool pool, std::uint32_t count,
+                                                  const VkDescriptorSet* sets) {
+  const auto device = deviceOf(handle);
+  device->descriptors.removeSets(count, sets);
+  return device->table.FreeDescriptorSets(handle, pool, count, sets);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL resetDescriptorPool(VkDevice handle, VkDescriptorPool pool,
+                                                   VkDescriptorPoolResetFlags flags) {
+  const auto device = deviceOf(handle);
+  device->descriptors.removePool(pool);
+  return device->table.ResetDescriptorPool(handle, pool, flags);
+}
+
+VKAPI_ATTR void VKAPI_CALL destroyDescriptorPool(VkDevice handle, VkDescriptorPool pool,
+                                                 const VkAllocationCallbacks* allocator) {
+  const auto device = deviceOf(handle);
+  device->descriptors.removePool(pool);
+  device->table.DestroyDescriptorPool(handle, pool, allocator);
+}
+
+VKAPI_ATTR void VKAPI_CALL cmdBindDescriptorSets(VkCommandBuffer commands, VkPipelineBindPoint point,
+                                                 VkPipelineLayout layout, std::uint32_t first, std::uint32_t count,
+                                                 const VkDescriptorSet* sets, std::uint32_t offsetCount,
+                                                 const std::uint32_t* offsets) {
+  const auto device = deviceOf(commands);
+  if (point == VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR) device->descriptors.bind(commands, first, count, sets);
+  device->table.CmdBindDescriptorSets(commands, point, layout, first, count, sets, offsetCount, offsets);
+}
+
+VKAPI_ATTR void VKAPI_CALL cmdBindDescriptorSets2(VkCommandBuffer commands, const BindDescriptorSetsInfo* info) {
+  const auto device = deviceOf(commands);
+  constexpr VkShaderStageFlags kRayTracing = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
+                                             VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
+                                             VK_SHADER_STAGE_INTERSECTION_BIT_KHR | VK_SHADER_STAGE_CALLABLE_BIT_KHR;
+  if ((info->stageFlags & kRayTracing) != 0)
+    device->descriptors.bind(commands, info->firstSet, info->descriptorSetCount, info->pDescriptorSets);
+  device->cmdBindDescriptorSets2(commands, info);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL queueWaitIdle(VkQueue queue) {
   const auto entry = entryOf(queue);
   const VkResult result = entry->device->table.QueueWaitIdle(queue);
@@ -221,6 +300,7 @@ VKAPI_ATTR VkResult VKAPI_CALL beginCommandBuffer(VkCommandBuffer commands, cons
   const auto entry = entryOf(commands);
   entry->tables->release(commands);
   entry->device->forgetCommands(commands);
+  entry->device->descriptors.forget(commands);
   return entry->device->table.BeginCommandBuffer(commands, info);
 }
 
@@ -485,6 +565,10 @@ PFN_vkVoidFunction deviceFunction(std::string_view name, bool sbt) {
       Entry{"vkDestroyShaderModule", asVoid(destroyShaderModule)},
       Entry{"vkGetShaderModuleIdentifierEXT", asVoid(getShaderModuleIdentifier)},
       Entry{"vkGetShaderModuleCreateInfoIdentifierEXT", asVoid(getShaderModuleCreateInfoIdentifier)},
+      Entry{"vkCreateDescriptorSetLayout", asVoid(createDescriptorSetLayout)},
+      Entry{"vkDestroyDescriptorSetLayout", asVoid(destroyDescriptorSetLayout)},
+      Entry{"vkCreatePipelineLayout", asVoid(createPipelineLayout)},
+      Entry{"vkDestroyPipelineLayout", asVoid(destroyPipelineLayout)},
       Entry{"vkCreateRayTracingPipelinesKHR", asVoid(createRayTracingPipelines)},
       Entry{"vkGetDeferredOperationResultKHR", asVoid(getDeferredOperationResult)},
       Entry{"vkDeferredOperationJoinKHR", asVoid(deferredOperationJoin)},
@@ -498,6 +582,13 @@ PFN_vkVoidFunction deviceFunction(std::string_view name, bool sbt) {
       Entry{"vkQueueSubmit2KHR", asVoid(queueSubmit2)},
   };
   static const std::array kTables{
+      Entry{"vkAllocateDescriptorSets", asVoid(allocateDescriptorSets)},
+      Entry{"vkFreeDescriptorSets", asVoid(freeDescriptorSets)},
+      Entry{"vkResetDescriptorPool", asVoid(resetDescriptorPool)},
+      Entry{"vkDestroyDescriptorPool", asVoid(destroyDescriptorPool)},
+      Entry{"vkCmdBindDescriptorSets", asVoid(cmdBindDescriptorSets)},
+      Entry{"vkCmdBindDescriptorSets2", asVoid(cmdBindDescriptorSets2)},
+      Entry{"vkCmdBindDescriptorSets2KHR", asVoid(cmdBindDescriptorSets2)},
       Entry{"vkQueueWaitIdle", asVoid(queueWaitIdle)},
       Entry{"vkDeviceWaitIdle", asVoid(deviceWaitIdle)},
       Entry{"vkWaitForFences", asVoid(waitForFences)},

@@ -33,9 +33,50 @@ std::shared_ptr<LinkWorker::Task> LinkWorker::add(std::function<void()> run) {
   return task;
 }
 
-void LinkWorker::wait(const Task& task) {
+std::shared_ptr<LinkWorker::Task> LinkWorker::runNow(std::function<void()> function) {
+  auto task = std::make_shared<Task>(Task{std::move(function), false});
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return task.done; });
+  ++open_;
+  run(task, lock);
+  return task;
+}
+
+void LinkWorker::wait(const std::shared_ptr<Task>& task) {
+  {
+    std::unique_lock lock(mutex_);
+    if (std::erase(tasks_, task) > 0) return run(task, lock);
+  }
+  waitUntil([&] { return task->done; });
+}
+
+void LinkWorker::run(const std::shared_ptr<Task>& task, std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  task->run();
+  lock.lock();
+  task->done = true;
+  task->run = nullptr;
+  --open_;
+  changed_.notify_all();
+}
+
+// `done` is called with the lock.
+void LinkWorker::waitUntil(const std::function<bool()>& done) {
+  std::unique_lock lock(mutex_);
+  while (!done()) {
+    const std::size_t known = loops_;
+    lock.unlock();
+    loop_.join();
+    lock.lock();
+    changed_.wait(lock, [&] { return done() || loops_ != known; });
+  }
+}
+
+void LinkWorker::loop(std::size_t count, const std::function<void(std::size_t)>& body) {
+  loop_.run(count, body, [this] {
+    const std::scoped_lock lock(mutex_);
+    ++loops_;
+    changed_.notify_all();
+  });
 }
 
 bool LinkWorker::isDone(const Task& task) {
@@ -44,8 +85,7 @@ bool LinkWorker::isDone(const Task& task) {
 }
 
 void LinkWorker::waitForAll() {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return open_ == 0; });
+  waitUntil([&] { return open_ == 0; });
 }
 
 void LinkWorker::work() {
@@ -56,13 +96,7 @@ void LinkWorker::work() {
     if (tasks_.empty()) return;
     const std::shared_ptr<Task> task = std::move(tasks_.front());
     tasks_.pop_front();
-    lock.unlock();
-    task->run();
-    lock.lock();
-    task->done = true;
-    task->run = nullptr;
-    --open_;
-    changed_.notify_all();
+    run(task, lock);
   }
 }
 

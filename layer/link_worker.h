@@ -11,6 +11,8 @@
 #include <mutex>
 #include <thread>
 
+#include "shared_loop.h"
+
 namespace quintet::layer {
 
 class LinkWorker {
@@ -24,19 +26,27 @@ class LinkWorker {
     bool done = false;
   };
   std::shared_ptr<Task> add(std::function<void()> run);
-  void wait(const Task& task);
+  std::shared_ptr<Task> runNow(std::function<void()> run);  // on the calling thread
+  // Runs a task that was not started on the calling thread, with its priority.
+  void wait(const std::shared_ptr<Task>& task);
   bool isDone(const Task& task);
+  // For tasks: a parallel loop in which threads that wait take part.
+  void loop(std::size_t count, const std::function<void(std::size_t)>& body);
   void waitForAll();
 
  private:
   void work();
+  void run(const std::shared_ptr<Task>& task, std::unique_lock<std::mutex>& lock);
+  void waitUntil(const std::function<bool()>& done);
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::shared_ptr<Task>> tasks_;
   std::size_t open_ = 0;  // tasks that are not done
   bool stop_ = false;
-  std::thread thread_;  // starts with the first task
+  SharedLoop loop_;
+  std::size_t loops_ = 0;  // that were started
+  std::thread thread_;     // starts with the first task
 };
 
 }  // namespace quintet::layer

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
-#include "base/parallel.h"
+#include "base/hash.h"
 #include "device.h"
 #include "spirv/shader_record.h"
 
@@ -47,9 +49,27 @@ std::string nameOf(const StageCopy& stage, std::size_t index, const Source& sour
   return name;
 }
 
+Hash keyOf(const StageCopy& stage) {
+  Hasher hasher;
+  hasher.add(std::as_bytes(std::span(*stage.words))).add(stage.stage).add(stage.entryPoint).add(stage.values.size());
+  const std::map<std::uint32_t, std::vector<std::uint32_t>> values(stage.values.begin(), stage.values.end());
+  for (const auto& [id, words] : values) hasher.add(id).add(std::as_bytes(std::span(words)));
+  return hasher.finish();
+}
+
+CachedStage prepare(const StageCopy& stage) {
+  CachedStage prepared;
+  prepared.module = check::stageModule("", *stage.words, {modelOf(stage.stage), stage.entryPoint}, stage.values);
+  if (const auto read = spirv::Module::read(prepared.module.spirv)) {
+    prepared.recordBytes = spirv::shaderRecordBytes(*read);
+    prepared.indexByRecord = spirv::indexesByRecord(*read);
+  }
+  return prepared;
+}
+
 }  // namespace
 
-StageModules modulesOf(const std::vector<StageCopy>& stages) {
+StageModules modulesOf(const std::vector<StageCopy>& stages, ModuleCache& cache, const ParallelLoop& loop) {
   using Constants = std::map<std::uint32_t, std::vector<std::uint32_t>>;
   StageModules result;
   const Source unknown{{}, "its SPIR-V is unknown"};
@@ -83,16 +103,23 @@ StageModules modulesOf(const std::vector<StageCopy>& stages) {
     if (source->summary) result.sources.insert(source->summary->sources.begin(), source->summary->sources.end());
   }
   result.recordBytes.resize(result.modules.size());
-  parallelFor(result.modules.size(), [&](std::size_t i) {
+  std::atomic<bool> indexByRecord = false;
+  loop(result.modules.size(), [&](std::size_t i) {
     const StageCopy& stage = stages[firstStage[i]];
     check::ModuleStage& module = result.modules[i];
-    const spv::ExecutionModel model = modelOf(stage.stage);
-    if (sourceOf[i]->summary)
-      module = check::stageModule(module.name, *stage.words, {model, stage.entryPoint}, stage.values);
-    else
-      module = {module.name, *check::stageOf(model), {}, sourceOf[i]->problem};
-    if (const auto read = spirv::Module::read(module.spirv)) result.recordBytes[i] = spirv::shaderRecordBytes(*read);
+    if (!sourceOf[i]->summary) {
+      module = {module.name, *check::stageOf(modelOf(stage.stage)), {}, sourceOf[i]->problem};
+      return;
+    }
+    const Hash key = keyOf(stage);
+    std::optional<CachedStage> prepared = cache.find(key);
+    if (!prepared) cache.add(key, *(prepared = prepare(stage)));
+    prepared->module.name = module.name;
+    module = std::move(prepared->module);
+    result.recordBytes[i] = prepared->recordBytes;
+    if (prepared->indexByRecord) indexByRecord = true;
   });
+  result.indexByRecord = indexByRecord;
   return result;
 }
 

@@ -7,12 +7,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "check/modules/stage_module.h"
 #include "check/pipeline_graph.h"
+#include "module_cache.h"
 
 namespace quintet::layer {
 
@@ -21,13 +23,16 @@ struct StageCopy;
 struct StageModules {
   std::vector<check::ModuleStage> modules;
   std::vector<std::uint64_t> recordBytes;      // by module: of its shader record block
+  bool indexByRecord = false;                  // a module has an index that depends on the data of its record
   std::vector<std::size_t> ofStage;            // index in `modules`, by stage
   std::map<std::string, std::string> sources;  // texts by file
 
   const check::ModuleStage& of(std::size_t stage) const { return modules[ofStage[stage]]; }
 };
 
-StageModules modulesOf(const std::vector<StageCopy>& stages);
+// `loop(count, body)` calls the body for each number below the count.
+using ParallelLoop = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
+StageModules modulesOf(const std::vector<StageCopy>& stages, ModuleCache& cache, const ParallelLoop& loop);
 
 }  // namespace quintet::layer
 #endif

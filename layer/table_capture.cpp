@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/hash.h"
+
 namespace quintet::layer {
 namespace {
 
@@ -16,6 +18,8 @@ constexpr VkDeviceSize kMaxCopy = VkDeviceSize{64} << 20;  // of one region
 constexpr VkDeviceSize kMaxTable = VkDeviceSize{4} << 20;  // of a buffer that an indirect trace can use
 constexpr VkDeviceSize kAlignment = 16;                    // of parts in a copy
 constexpr std::string_view kUnreachable = "Q801";
+// An application can change the data of its records for each trace. Later contents are not checked.
+constexpr std::size_t kMaxContents = 16;
 
 VkDeviceSize aligned(VkDeviceSize bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
 
@@ -25,6 +29,38 @@ check::TableKind kindOf(const PipelineCopy& copy, const GroupCopy& group) {
       group.general ? copy.stages[*group.general].stage : VK_SHADER_STAGE_CALLABLE_BIT_KHR;
   if (stage == VK_SHADER_STAGE_RAYGEN_BIT_KHR) return check::TableKind::rayGeneration;
   return stage == VK_SHADER_STAGE_MISS_BIT_KHR ? check::TableKind::miss : check::TableKind::callable;
+}
+
+std::optional<std::string> rayGenerationOf(const LinkedPipeline& pipeline, const check::TableFindings& found) {
+  const auto& records = found.records[static_cast<std::size_t>(check::TableKind::rayGeneration)];
+  if (records.empty() || !records.front()) return {};
+  const std::optional<std::size_t>& stage = pipeline.copy.groups[*records.front()].general;
+  return stage ? std::optional(pipeline.stages.of(*stage).name) : std::nullopt;
+}
+
+// The modules of the stages that the groups have.
+std::vector<check::ModuleStage> usedModules(const std::vector<check::ModuleStage>& modules,
+                                            const check::PipelineGroups& groups) {
+  std::set<std::string_view> names(groups.rayGenerations.begin(), groups.rayGenerations.end());
+  for (const program::MissShader& miss : groups.misses) names.insert(miss.file);
+  for (const program::Callable& callable : groups.callables) names.insert(callable.file);
+  for (const program::HitGroup& group : groups.hitGroups)
+    for (const auto& [ray, shaders] : group.shaders)
+      names.insert({shaders.closestHit, shaders.anyHit, shaders.intersection});
+  std::vector<check::ModuleStage> used;
+  for (const check::ModuleStage& module : modules)
+    if (names.contains(module.name)) used.push_back(module);
+  return used;
+}
+
+std::string contentKey(const check::TableData& data) {
+  Hasher hasher;
+  for (const auto& [stage, bytes] : data.rayGeneration) hasher.add(bytes);
+  for (const auto* table : {&data.misses, &data.hits, &data.callables}) {
+    hasher.add(table->size());
+    for (const check::RecordData& bytes : *table) hasher.add(bytes);
+  }
+  return " " + hasher.finish().hex();
 }
 
 const VkAccelerationStructureGeometryKHR& geometryOf(const VkAccelerationStructureBuildGeometryInfoKHR& info,
@@ -91,6 +127,7 @@ void TableCapture::removePipeline(VkPipeline pipeline) {
   groups_.erase(pipeline);
   const std::string prefix = fmt::format("{:#x} ", numberOf(pipeline));
   std::erase_if(linked_, [&](const std::string& key) { return key.starts_with(prefix); });
+  std::erase_if(linkedData_, [&](const auto& entry) { return entry.first.starts_with(prefix); });
 }
 
 std::optional<TableCapture::Found> TableCapture::find(VkDeviceAddress address) const {
@@ -164,6 +201,7 @@ void TableCapture::trace(VkCommandBuffer commands,
   copy.commands = commands;
   copy.pipeline = device_.boundPipeline(commands);
   if (!copy.pipeline || !copy.pipeline->copy.isComplete) return;
+  copy.descriptors = device_.descriptors.withBoundSets(copy.pipeline->copy.descriptors, commands);
   const std::scoped_lock lock(mutex_);
   std::vector<Part> parts;
   std::size_t at = 0;
@@ -187,6 +225,7 @@ void TableCapture::traceIndirect(VkCommandBuffer commands, VkDeviceAddress addre
   copy.commands = commands;
   copy.pipeline = device_.boundPipeline(commands);
   if (!copy.pipeline || !copy.pipeline->copy.isComplete) return;
+  copy.descriptors = device_.descriptors.withBoundSets(copy.pipeline->copy.descriptors, commands);
   const std::scoped_lock lock(mutex_);
   const auto command = find(address);
   if (!command || !command->readable || command->available < sizeof(VkTraceRaysIndirectCommand2KHR)) return;
@@ -412,7 +451,7 @@ void TableCapture::finishTrace(const Copy& copy, const std::vector<std::byte>& b
   const check::TableFindings found = check::checkTable(regions, groupsOf(*copy.pipeline), device_.tableLimits);
   device_.deliver(*copy.pipeline);
   device_.report(found.diagnostics, *copy.pipeline);
-  if (found.complete && found.diagnostics.empty()) link(*copy.pipeline, found);
+  if (found.complete && found.diagnostics.empty()) link(copy, found, regions);
 }
 
 const std::vector<check::TableGroup>& TableCapture::groupsOf(LinkedPipeline& pipeline) {
@@ -445,8 +484,30 @@ const std::vector<check::TableGroup>& TableCapture::groupsOf(LinkedPipeline& pip
   return groups_[pipeline.handle] = std::move(groups);
 }
 
+// What follows the handles of the records.
+check::TableData TableCapture::dataOf(const check::TableFindings& found, const Regions& regions,
+                                      const std::optional<std::string>& rayGeneration) const {
+  const std::size_t handle = device_.tableLimits.handleBytes;
+  const auto recordsOf = [&](check::TableKind kind) {
+    const check::TableRegion& region = regions[static_cast<std::size_t>(kind)];
+    std::vector<check::RecordData> records(found.records[static_cast<std::size_t>(kind)].size());
+    const std::uint64_t stride = kind == check::TableKind::rayGeneration ? region.bytes : region.stride;
+    for (std::size_t i = 0; i < records.size() && stride > handle; ++i) {
+      const auto begin = region.data.begin() + static_cast<std::ptrdiff_t>(i * stride);
+      records[i].assign(begin + static_cast<std::ptrdiff_t>(handle), begin + static_cast<std::ptrdiff_t>(stride));
+    }
+    return records;
+  };
+  check::TableData data{
+      {}, recordsOf(check::TableKind::miss), recordsOf(check::TableKind::hit), recordsOf(check::TableKind::callable)};
+  const auto generation = recordsOf(check::TableKind::rayGeneration);
+  if (rayGeneration && !generation.empty()) data.rayGeneration[*rayGeneration] = generation.front();
+  return data;
+}
+
 // Links the pipeline again with the table and the instances. Reports what the link without them could not know.
-void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& found) {
+void TableCapture::link(const Copy& copy, const check::TableFindings& found, const Regions& regions) {
+  LinkedPipeline& pipeline = *copy.pipeline;
   // The rules compare traces with records, and shaders with one another.
   if (std::ranges::any_of(found.records,
                           [](const auto& records) { return records.size() > check::kMaxTableWithoutGaps; }))
@@ -472,6 +533,17 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   select(check::TableKind::hit, groups.hitGroups);
   select(check::TableKind::callable, groups.callables);
   for (program::HitGroup& hit : groups.hitGroups) hit.shaders.try_emplace("");
+  // A pipeline can have several ray generation shaders, each with tables of its own.
+  const std::optional<std::string> generation = rayGenerationOf(pipeline, found);
+  if (generation) {
+    groups.rayGenerations = {*generation};
+    key += " " + *generation;
+  }
+  const std::vector<check::ModuleStage> modules = usedModules(pipeline.stages.modules, groups);
+  if (pipeline.stages.indexByRecord) groups.recordData = dataOf(found, regions, generation);
+  groups.descriptorCounts = copy.descriptors;
+  for (const auto& [slot, count] : groups.descriptorCounts)
+    key += fmt::format(" {}.{}:{}", slot.first, slot.second, count);
   groups.tablesKnown = true;
   const std::vector<check::PipelineGroups> states = withInstances(groups);
   for (const check::PipelineGroups& state : states) {
@@ -482,21 +554,27 @@ void TableCapture::link(LinkedPipeline& pipeline, const check::TableFindings& fo
   }
   {
     const std::scoped_lock lock(mutex_);
-    if (!linked_.insert(key).second) return;
+    if (!pipeline.stages.indexByRecord) {
+      if (!linked_.insert(key).second) return;
+    } else {
+      const std::string content = key + contentKey(groups.recordData);
+      if (linked_.contains(content) || linkedData_[key] >= kMaxContents) return;
+      linked_.insert(content);
+      ++linkedData_[key];
+    }
   }
   const auto has = [](const std::vector<Diagnostic>& list, const Diagnostic& d) {
     return std::ranges::any_of(
         list, [&](const Diagnostic& k) { return k.id == d.id && k.file == d.file && k.line == d.line; });
   };
   // A table need not reach all stages: a pipeline can be for more than one scene.
-  std::vector<Diagnostic> added =
-      check::checkModules(states.front(), pipeline.stages.modules, device_.limits).diagnostics;
+  std::vector<Diagnostic> added = check::checkModules(states.front(), modules, device_.limits).diagnostics;
   std::erase_if(added, [&](const Diagnostic& d) {
     return d.id == kUnreachable || d.severity == Severity::note || has(pipeline.result.diagnostics, d);
   });
   // What holds for only one of several possible states of the instances is not certain.
   for (std::size_t i = 1; i < states.size() && !added.empty(); ++i) {
-    const auto other = check::checkModules(states[i], pipeline.stages.modules, device_.limits).diagnostics;
+    const auto other = check::checkModules(states[i], modules, device_.limits).diagnostics;
     std::erase_if(added, [&](const Diagnostic& d) { return !has(other, d); });
   }
   check::Suppressions(pipeline.stages.sources).apply(added);

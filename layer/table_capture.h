@@ -99,6 +99,7 @@ class TableCapture {
     std::size_t markOffset = 0;
     // Of a trace.
     std::shared_ptr<LinkedPipeline> pipeline;
+    DescriptorCounts descriptors;
     std::array<check::TableRegion, check::kTableKinds> regions;
     std::array<std::pair<std::size_t, std::size_t>, check::kTableKinds> data;  // offset and bytes in `mapped`
     bool isIndirect = false;                                                   // the copy starts with the command
@@ -129,7 +130,10 @@ class TableCapture {
   const std::vector<check::TableGroup>& groupsOf(LinkedPipeline& pipeline);
   static void readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
                           std::array<check::TableRegion, check::kTableKinds>& regions);
-  void link(LinkedPipeline& pipeline, const check::TableFindings& found);
+  using Regions = std::array<check::TableRegion, check::kTableKinds>;
+  void link(const Copy& copy, const check::TableFindings& found, const Regions& regions);
+  check::TableData dataOf(const check::TableFindings& found, const Regions& regions,
+                          const std::optional<std::string>& rayGeneration) const;
   static Bottom bottomOf(const VkAccelerationStructureBuildGeometryInfoKHR& info);
   // Returns false if the build is not one of a bottom-level structure.
   bool buildBottom(const VkAccelerationStructureBuildGeometryInfoKHR& info);
@@ -149,7 +153,8 @@ class TableCapture {
   std::set<VkAccelerationStructureKHR> topLevel_;  // all that exist, also those whose instances are unknown
   std::vector<Top> replaced_;                      // by builds that were completed together with the traces
   std::unordered_map<VkPipeline, std::vector<check::TableGroup>> groups_;
-  std::set<std::string> linked_;  // tables that were already linked
+  std::set<std::string> linked_;                   // tables that were already linked
+  std::map<std::string, std::size_t> linkedData_;  // number of contents of their records, by table
 };
 
 }  // namespace quintet::layer

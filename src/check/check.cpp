@@ -27,6 +27,9 @@ constexpr std::array<std::string_view, 10> kWrongArgument{"Q302", "Q501", "Q502"
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
 
+// Ids of code and groups without effect. Pipelines of one engine that differ in specialization constants share them.
+constexpr std::array<std::string_view, 3> kWithoutEffect{"Q606", "Q610", "Q801"};
+
 // The intersection shaders of hit groups with an any-hit shader.
 std::set<std::string> intersectionsWithAnyHit(const PipelineGraph& graph) {
   std::set<std::string> files;
@@ -327,6 +330,8 @@ CheckResult checkModules(PipelineGroups groups, std::span<const ModuleStage> mod
     runRulesOfKnownStages(input, report);
   }
   result.diagnostics = report.take();
+  if (graph.hasVariants)
+    std::erase_if(result.diagnostics, [](const Diagnostic& d) { return std::ranges::count(kWithoutEffect, d.id) > 0; });
   std::ranges::for_each(result.diagnostics, nameIds);
   for (std::size_t i = 0; i < modules.size(); ++i)
     if (const PipelineStage& stage = graph.stages[i]; !stage.problem.empty() && modules[i].problem.empty())

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -24,6 +25,13 @@ std::string_view roleName(Role role) {
     case Role::callable: break;
   }
   return "callable";
+}
+
+// Quintet launches one invocation per pixel. Of other applications, the launch can have any size and three dimensions.
+void addLaunch(spirv::ValueContext& context) {
+  constexpr double kMostInvocations = 1073741824.0;  // Vulkan's limit of most devices
+  context.builtIns[spv::BuiltIn::LaunchIdKHR] = spirv::ValueRange::between(0.0, kMostInvocations - 1.0);
+  context.builtIns[spv::BuiltIn::LaunchSizeKHR] = spirv::ValueRange::between(1.0, kMostInvocations);
 }
 
 // The records that a geometry of an instance uses with the known values of a trace.
@@ -61,6 +69,7 @@ PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> 
   context_ = [this](const std::string& file, const program::SceneFacts* scene, ParameterUse) {
     spirv::ValueContext context =
         groups.groupsKnown || !groups.hasIntersections ? groupContext(groups.hitGroups, file) : spirv::ValueContext{};
+    addLaunch(context);
     if (scene) addCustomIndices(file, context);
     return context;
   };
@@ -68,6 +77,7 @@ PipelineGraph::PipelineGraph(PipelineGroups given, std::span<const ModuleStage> 
   for (const ModuleStage& module : modules) {
     stages.push_back({module.name, module.kind, {}, {}, module.isStub});
     problems.push_back(module.problem);
+    hasVariants = hasVariants || module.isVariant;
   }
   readStages([&](std::size_t i) { return modules[i].spirv; }, std::move(problems));
 }
@@ -132,6 +142,92 @@ void PipelineGraph::addCustomIndices(const std::string& file, spirv::ValueContex
     }
   }
   check::addCustomIndices(indices, each, context);
+}
+
+std::map<std::size_t, PipelineGraph::HitBuiltIns> PipelineGraph::certainHits(std::size_t stage) const {
+  std::map<std::size_t, HitBuiltIns> hits;
+  if (groups.hitRecords != HitRecords::byRecord || !groups.instances) return hits;
+  const bool anyHit = stages[stage].kind == shader::Stage::anyHit;
+  for (const TraceTargets& selected : targets) {
+    const auto runsIt = [&](const Edge& edge) { return edge.stage == stage && edge.role != Role::miss; };
+    std::set<std::size_t> groupsWithIt;
+    for (const Edge& edge : selected.edges)
+      if (runsIt(edge)) groupsWithIt.insert(edge.hit.group);
+    if (groupsWithIt.empty() || selected.mayRunNothing) continue;
+    const spirv::TraceFacts& trace = *traces[selected.traces.front()].trace;
+    if (!trace.offset.certain() || !trace.stride.certain() || !trace.mask.certain()) continue;
+    for (const InstanceRecords& instance : *groups.instances) {
+      if (!trace.mask.mayHave(instance.facts.mask & 0xFFu)) continue;
+      for (std::uint32_t k = 0; k < instance.facts.geometryCount; ++k) {
+        const program::GeometryFacts& geometry = groups.geometries[instance.facts.firstGeometry + k];
+        if (trace.flags.mayHave(geometry.procedural() ? kFlagSkipAabbs : kFlagSkipTriangles)) continue;
+        const bool opaque = instance.facts.forceOpaque || (geometry.opaque() && !instance.facts.forceNoOpaque);
+        if (trace.flags.mayHave(opaque ? kFlagCullOpaque : kFlagCullNoOpaque)) continue;
+        if (anyHit && (trace.flags.mayHave(kFlagOpaque) || (opaque && !trace.flags.mustHave(kFlagNoOpaque)))) continue;
+        for (const std::size_t record : recordsOfGeometry(instance, k, trace)) {
+          if (!groupsWithIt.contains(record)) continue;
+          HitBuiltIns& found = hits[record];
+          found.customIndices.insert(instance.facts.customIndex);
+          found.geometries.insert(k);
+          found.allCustomIndices = found.allCustomIndices && instance.hasCustomIndex;
+        }
+      }
+    }
+  }
+  return hits;
+}
+
+std::set<std::size_t> PipelineGraph::certainMisses(std::size_t stage) const {
+  std::set<std::size_t> records;
+  for (const TraceTargets& selected : targets)
+    for (const Edge& edge : selected.edges)
+      if (edge.stage == stage && edge.role == Role::miss && edge.exact && !selected.mayRunNothing)
+        records.insert(edge.index);
+  return records;
+}
+
+std::set<std::size_t> PipelineGraph::certainCallables(std::size_t stage) const {
+  std::set<std::size_t> records;
+  for (const CallSite& site : calls)
+    for (const Edge& edge : site.edges)
+      if (edge.stage == stage && edge.exact) records.insert(edge.index);
+  return records;
+}
+
+std::vector<RecordRuns> PipelineGraph::recordRuns(const std::string& file) const {
+  const PipelineStage* found = stage(file);
+  if (!found || !groups.tablesKnown || !error.empty()) return {};
+  const auto index = static_cast<std::size_t>(found - stages.data());
+  std::vector<RecordRuns> runs;
+  std::set<std::tuple<RecordData, std::set<double>, std::set<double>>> known;
+  const auto add = [&](std::string_view table, std::size_t record, const std::vector<RecordData>& data,
+                       const HitBuiltIns& builtIns) {
+    if (record >= data.size() || data[record].empty()) return;
+    const std::set<double> none;
+    const std::set<double>& indices = builtIns.allCustomIndices ? builtIns.customIndices : none;
+    if (!known.insert({data[record], indices, builtIns.geometries}).second) return;
+    RecordRuns& added = runs.emplace_back();
+    added.record = fmt::format("{} record {}", table, record);
+    added.context = groupContext(groups.hitGroups, file);
+    addLaunch(added.context);
+    added.context.record = data[record];
+    check::addCustomIndices(indices, true, added.context);
+    addGeometryIndices(builtIns.geometries, added.context);
+  };
+  const TableData& data = groups.recordData;
+  if (const auto own = data.rayGeneration.find(file); own != data.rayGeneration.end()) {
+    RecordRuns& added = runs.emplace_back();
+    added.record = "the ray generation record";
+    addLaunch(added.context);
+    added.context.record = own->second;
+  }
+  for (const std::size_t record : data.misses.empty() ? std::set<std::size_t>{} : certainMisses(index))
+    add("miss", record, data.misses, {});
+  for (const std::size_t record : data.callables.empty() ? std::set<std::size_t>{} : certainCallables(index))
+    add("callable", record, data.callables, {});
+  if (!data.hits.empty())
+    for (const auto& [record, builtIns] : certainHits(index)) add("hit", record, data.hits, builtIns);
+  return runs;
 }
 
 void PipelineGraph::compareRecords() {

@@ -41,6 +41,8 @@ struct ModuleStage {
   std::string problem;               // why there is no SPIR-V; empty if there is
   bool malformed = false;  // the problem is a mistake of the module, not something that is unknown to SPIRV-Tools
   bool isStub = false;     // an intersection shader without statements: a variant of a shader without its code
+  // Specialization constants with values decide which code runs: what is unused here can be used by other pipelines.
+  bool isVariant = false;
 };
 
 struct PipelineStage {
@@ -100,6 +102,12 @@ struct TraceSite {
   std::string_view noun() const { return isExecution() ? "execution of a hit object" : "trace"; }  // of messages
 };
 
+// The invocations of a stage with one record of the shader binding table.
+struct RecordRuns {
+  std::string record;           // "hit record 3"
+  spirv::ValueContext context;  // with the data of the record, and the built-ins of its hits
+};
+
 struct CallSite {
   std::size_t stage = 0;
   const spirv::CallFacts* call = nullptr;
@@ -119,6 +127,7 @@ struct PipelineGraph {
   std::vector<TraceSite> traces;  // in the order of their stages
   std::deque<TraceTargets> targets;
   std::vector<CallSite> calls;  // in the order of their stages
+  bool hasVariants = false;     // a stage is one, as ModuleStage::isVariant
   std::string error;            // first module that cannot be analyzed completely, and the reason; empty if all can
 
   std::size_t rayCount() const { return groups.rays.size(); }
@@ -135,6 +144,9 @@ struct PipelineGraph {
   bool hasIntersection(std::size_t group) const;
   // What is known about the values of a stage. A null `scene` stands for any scene.
   spirv::ValueContext context(const std::string& file, const program::SceneFacts* scene) const;
+  // The records with known data with which the stage certainly runs, if rays hit what the arguments of traces select. With equal
+  // data and built-ins, only the first one.
+  std::vector<RecordRuns> recordRuns(const std::string& file) const;
   // Ranges of a stage, which has facts, if all parameters have their defaults; null without parameters. Cached; threads
   // must ask for different stages.
   const DefaultRanges* defaults(std::size_t stage) const;
@@ -188,6 +200,14 @@ struct PipelineGraph {
 
   void compareRecords();
   void addCustomIndices(const std::string& file, spirv::ValueContext& context) const;
+  // The built-ins of hits that run a stage, by hit record.
+  struct HitBuiltIns {
+    std::set<double> customIndices, geometries;
+    bool allCustomIndices = true;  // each instance has a known one
+  };
+  std::map<std::size_t, HitBuiltIns> certainHits(std::size_t stage) const;
+  std::set<std::size_t> certainMisses(std::size_t stage) const;
+  std::set<std::size_t> certainCallables(std::size_t stage) const;
   void assume(TraceTargets& targets) const;
   void addTraces(std::size_t stage, TargetsOfArguments& known);
   void addCalls(std::size_t stage);

@@ -5,10 +5,12 @@
 #ifndef QUINTET_CHECK_PIPELINE_GROUPS_H
 #define QUINTET_CHECK_PIPELINE_GROUPS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program/description/program.h"
@@ -29,6 +31,16 @@ struct InstanceRecords {
   bool hasCustomIndex = false;     // facts.customIndex is known
 };
 
+// Data of the records of a shader binding table, after their handles. An empty one is unknown.
+using RecordData = std::vector<std::byte>;
+struct TableData {
+  std::map<std::string, RecordData> rayGeneration;  // by stage
+  std::vector<RecordData> misses, hits, callables;  // in the order of the records; further records are unknown
+};
+
+// Set and binding of a variable of a shader.
+using DescriptorSlot = std::pair<std::uint32_t, std::uint32_t>;
+
 struct PipelineGroups {
   std::string noun = "program";             // what messages call the whole: "program", "pipeline"
   std::vector<std::string> rayGenerations;  // stages
@@ -48,6 +60,9 @@ struct PipelineGroups {
   // With byRecord: what rays can hit. Without, a hit uses one of the hit groups that is unknown unless there is only one.
   std::optional<std::vector<InstanceRecords>> instances = {};
   std::vector<program::GeometryFacts> geometries = {};
+  TableData recordData = {};  // if tablesKnown
+  // Number of descriptors of the bindings of the pipeline layout, as far as they are known.
+  std::map<DescriptorSlot, std::uint32_t> descriptorCounts = {};
 
   std::string origin;                             // folder of the stages' files; empty if their names are paths
   std::string descriptionFile;                    // that declares the groups; lines of the groups refer to it

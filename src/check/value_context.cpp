@@ -169,6 +169,10 @@ void addCustomIndices(const std::set<double>& indices, bool each, spirv::ValueCo
   context.builtIns[spv::BuiltIn::InstanceCustomIndexKHR] = range;
 }
 
+void addGeometryIndices(const std::set<double>& indices, spirv::ValueContext& context) {
+  if (!indices.empty()) context.builtIns[spv::BuiltIn::RayGeometryIndexKHR] = amongAll(indices);
+}
+
 DefaultRanges::DefaultRanges(spirv::ValueContext context, const spirv::Module& module)
     : module_(module), ranges_(module, std::move(context)) {}
 

@@ -30,6 +30,9 @@ spirv::ValueContext groupContext(const std::vector<program::HitGroup>& hitGroups
 // The numbers of the instances whose hits a stage gets. `each`: each of them occurs.
 void addCustomIndices(const std::set<double>& indices, bool each, spirv::ValueContext& context);
 
+// The numbers of the geometries that a stage gets, each of which occurs.
+void addGeometryIndices(const std::set<double>& indices, spirv::ValueContext& context);
+
 // Ranges in a stage if all parameters have their defaults.
 class DefaultRanges {
  public:

@@ -152,7 +152,13 @@ class StageFinder {
 
   std::vector<StagePlan> find(check::PipelineGroups& groups) {
     using shader::Stage;
-    for (std::string& stage : groups.rayGenerations) resolve(stage, Stage::rayGeneration);
+    for (std::string& stage : groups.rayGenerations) {
+      auto data = groups.recordData.rayGeneration.extract(stage);
+      resolve(stage, Stage::rayGeneration);
+      if (data.empty()) continue;
+      data.key() = stage;
+      groups.recordData.rayGeneration.insert(std::move(data));
+    }
     for (program::MissShader& miss : groups.misses) resolve(miss.file, Stage::miss);
     for (program::Callable& callable : groups.callables) resolve(callable.file, Stage::callable);
     for (program::HitGroup& group : groups.hitGroups)

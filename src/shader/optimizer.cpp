@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shader/optimizer.h"
 
+#include <algorithm>
+#include <array>
+#include <spirv/unified1/spirv.hpp11>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spirv-tools/libspirv.hpp>
@@ -53,7 +58,7 @@ void registerInlining(spvtools::Optimizer& optimizer) {
       .RegisterPass(spvtools::CreateAggressiveDCEPass(false));
 }
 
-enum class Passes { all, inlining, reductions };
+enum class Passes { all, inlining };
 
 // Runs the passes that `registerPasses(optimizer)` adds. Throws Error if one fails.
 template <class Register>
@@ -74,22 +79,128 @@ std::vector<std::uint32_t> runPasses(const std::vector<std::uint32_t>& words, co
   return result;
 }
 
-// `untrusted`: validates after each pass. Some passes of SPIRV-Tools 2023.1 make valid modules invalid, with which later passes
-// crash (VectorDCE).
-std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo, bool untrusted,
-                               const std::optional<SpecializationValues>& values, Passes passes = Passes::all) {
+void registerPasses(spvtools::Optimizer& optimizer, Passes passes) {
+  if (passes == Passes::inlining)
+    registerInlining(optimizer);
+  else
+    registerReductions(optimizer);
+  if (passes == Passes::all) optimizer.RegisterPerformancePasses();
+}
+
+// Runs a pass on a module that need not be valid. Throws Error if it fails.
+std::vector<std::uint32_t> runPass(const std::vector<std::uint32_t>& words, const std::string& name) {
   spvtools::OptimizerOptions options;
-  options.set_run_validator(passes != Passes::reductions);
+  options.set_run_validator(false);
+  spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_3);
+  std::string message;
+  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+    if (level <= SPV_MSG_ERROR) message = text;
+  });
+  std::vector<std::uint32_t> result;
+  if (!optimizer.RegisterPassFromFlag("--" + name) || !optimizer.Run(words.data(), words.size(), &result, options))
+    throw Error(fmt::format("spirv-opt failed in {}{}{}", name, message.empty() ? "" : ": ", message));
+  return result;
+}
+
+// What a module has, as far as it decides which passes can change it.
+class ModuleContent {
+ public:
+  explicit ModuleContent(const std::vector<std::uint32_t>& words) {
+    constexpr std::size_t kHeader = 5;
+    for (std::size_t at = kHeader; at < words.size(); at += std::max(1u, words[at] >> 16)) {
+      const auto operand = [&](std::size_t i) { return at + i < words.size() ? words[at + i] : 0; };
+      switch (static_cast<spv::Op>(words[at] & 0xFFFFu)) {
+        case spv::Op::OpFunction: ++functions_; break;
+        case spv::Op::OpReturn:
+        case spv::Op::OpReturnValue: ++returns_; break;
+        case spv::Op::OpKill:
+        case spv::Op::OpTerminateInvocation: kills_ = true; break;
+        case spv::Op::OpCompositeInsert: inserts_ = true; break;
+        case spv::Op::OpPhi: phis_ = true; break;
+        case spv::Op::OpLoopMerge: unrolls_ = unrolls_ || (operand(3) & kUnroll) != 0; break;
+        case spv::Op::OpVariable:
+          locals_ = locals_ || static_cast<spv::StorageClass>(operand(3)) == spv::StorageClass::Function;
+          privates_ = privates_ || static_cast<spv::StorageClass>(operand(3)) == spv::StorageClass::Private;
+          break;
+        default: break;
+      }
+    }
+  }
+
+  // False if the pass has nothing to work on. Building the module for a pass takes longer than most passes.
+  bool canChange(std::string_view pass) const {
+    if (pass == "wrap-opkill") return kills_;
+    if (pass == "merge-return") return returns_ > functions_;
+    if (pass == "inline-entry-points-exhaustive" || pass == "eliminate-dead-functions") return functions_ > 1;
+    if (pass == "private-to-local") return privates_;
+    if (pass == "loop-unroll") return unrolls_;
+    if (pass == "eliminate-dead-inserts") return inserts_;
+    if (pass == "if-conversion") return phis_;
+    constexpr std::array<std::string_view, 5> kOfLocals{"eliminate-local-single-block", "eliminate-local-single-store",
+                                                        "convert-local-access-chains", "ssa-rewrite",
+                                                        "copy-propagate-arrays"};
+    if (pass.starts_with("scalar-replacement") || std::ranges::find(kOfLocals, pass) != kOfLocals.end()) return locals_;
+    return true;
+  }
+
+ private:
+  static constexpr auto kUnroll = static_cast<std::uint32_t>(spv::LoopControlMask::Unroll);
+
+  std::size_t functions_ = 0, returns_ = 0;
+  bool kills_ = false, inserts_ = false, phis_ = false, unrolls_ = false, locals_ = false, privates_ = false;
+};
+
+// The passes one by one, with a validation after each that changes the module. Some passes of SPIRV-Tools 2023.1 make valid modules
+// invalid, with which later passes crash (VectorDCE). Optimizer::SetValidateAfterAll() would validate three times as often, which
+// takes four fifths of the time.
+std::vector<std::uint32_t> runUntrusted(const std::vector<std::uint32_t>& words,
+                                        const std::optional<SpecializationValues>& values,
+                                        Passes passes = Passes::all) {
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(true);
+  options.set_validator_options(validatorOptions());
+  std::vector<std::uint32_t> current = runPasses(words, options, [&](spvtools::Optimizer& optimizer) {
+    optimizer.SetValidateAfterAll(true);
+    if (values) registerSpecialization(optimizer, *values);
+  });
+  std::string problem;
+  runOnDeepStack(stackBytesFor(words.size() * sizeof(std::uint32_t)), [&] {
+    spvtools::Optimizer all(SPV_ENV_VULKAN_1_3);
+    registerPasses(all, passes);
+    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+    tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+      if (level <= SPV_MSG_ERROR) problem = text;
+    });
+    const spvtools::ValidatorOptions validator = validatorOptions();
+    ModuleContent content(current);
+    try {
+      for (const char* name : all.GetPassNames()) {
+        if (!content.canChange(name)) continue;
+        std::vector<std::uint32_t> next = runPass(current, name);
+        if (next == current) continue;
+        if (!tools.Validate(next.data(), next.size(), validator)) {
+          problem = fmt::format("spirv-opt made the module invalid in {}: {}", name, problem);
+          return;
+        }
+        current = std::move(next);
+        content = ModuleContent(current);
+      }
+      problem.clear();
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  });
+  if (!problem.empty()) throw Error(problem);
+  return current;
+}
+
+std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& words, bool debugInfo) {
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(true);
   options.set_validator_options(validatorOptions());
   return runPasses(words, options, [&](spvtools::Optimizer& optimizer) {
-    optimizer.SetValidateAfterAll(untrusted);
     if (!debugInfo) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
-    if (values) registerSpecialization(optimizer, *values);
-    if (passes == Passes::inlining)
-      registerInlining(optimizer);
-    else
-      registerReductions(optimizer);
-    if (passes == Passes::all) optimizer.RegisterPerformancePasses();
+    registerPasses(optimizer, Passes::all);
   });
 }
 
@@ -123,21 +234,23 @@ std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, c
 }
 
 std::vector<std::uint32_t> optimize(const std::vector<std::uint32_t>& words, bool debugInfo) {
-  return run(words, debugInfo, false, {});
+  return run(words, debugInfo);
 }
 
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
                                                const std::optional<SpecializationValues>& values) {
   try {
-    return run(words, true, true, values);
+    return runUntrusted(words, values);
   } catch (const Error&) {
     if (!validate(words).text.empty()) throw;
-    return run(words, true, true, values, Passes::inlining);
+    return runUntrusted(words, values, Passes::inlining);
   }
 }
 
 std::vector<std::uint32_t> reduceUnvalidated(const std::vector<std::uint32_t>& words) {
-  return run(words, true, false, {}, Passes::reductions);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  return runPasses(words, options, [](spvtools::Optimizer& optimizer) { registerReductions(optimizer); });
 }
 
 ValidationProblem validate(const std::vector<std::uint32_t>& words) {

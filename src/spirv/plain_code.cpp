@@ -8,6 +8,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "spirv/newer_queries.h"
 #include "spirv/raw_instructions.h"
 #include "spirv/reorder_code.h"
 #include "spirv/type.h"
@@ -117,7 +118,7 @@ class MemoryCopies {
 
 std::vector<std::uint32_t> withPlainCode(std::span<const std::uint32_t> given) {
   constexpr auto kDontInline = static_cast<std::uint32_t>(spv::FunctionControlMask::DontInline);
-  const std::vector<std::uint32_t> words = withReorderNv(given);
+  const std::vector<std::uint32_t> words = withKnownQueries(withReorderNv(given));
   std::vector<std::uint32_t> result = headerOf(words);
   const DecorationGroups groups(words);
   MemoryCopies copies;

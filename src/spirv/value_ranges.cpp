@@ -7,10 +7,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <set>
 
 #include "spirv/access.h"
 #include "spirv/control_flow.h"
+#include "spirv/shader_record.h"
 #include "spirv/value_flow.h"
 #include "spirv/value_part.h"
 
@@ -94,6 +96,7 @@ struct ValueRanges::Impl {
   std::map<std::size_t, ControlFlow> flows;
   std::map<Id, std::optional<CountedLoop>> loops;
   std::set<Id> openLoops;
+  std::optional<BlockLayout> layout;  // of the shader record
   int depth = 0;
 
   const ControlFlow& flow(std::size_t function) {
@@ -112,6 +115,7 @@ struct ValueRanges::Impl {
   ValueRange constantRange(const Instruction& value, const Type& type) const;
   ValueRange loadRange(Evaluator& in, const Instruction& load, const Type& type, const Path& path);
   ValueRange localRange(Evaluator& in, const Access& access, const Type& type, const Path& path);
+  std::optional<ValueRange> recordRange(const Access& access, const Type& type, const Path& path);
   ValueRange storedRange(const Access& access, const Type& type,
                          const std::vector<std::optional<std::uint32_t>>& wanted);
   ValueRange partRange(Evaluator& in, Id value, const std::vector<std::optional<std::uint32_t>>& rest, Path& path,
@@ -584,6 +588,8 @@ ValueRange ValueRanges::Impl::loadRange(Evaluator& in, const Instruction& load, 
   if (shared && shared->storage == spv::StorageClass::HitAttributeKHR && context.hitAttribute)
     return fitted(type, *context.hitAttribute);
   if (isLocal(module, access.base)) return localRange(in, access, type, path);
+  if (shared && shared->storage == spv::StorageClass::ShaderRecordBufferKHR)
+    if (const auto known = recordRange(access, type, path)) return *known;
   if (const auto member = bufferMember(module, load, path)) {
     const auto known = context.members.find({member->structure, member->member});
     if (known == context.members.end() || known->second.empty()) return rangeOf(type);
@@ -591,6 +597,22 @@ ValueRange ValueRanges::Impl::loadRange(Evaluator& in, const Instruction& load, 
     return fitted(type, components[std::min<std::size_t>(member->component, components.size() - 1)]);
   }
   return rangeOf(type);
+}
+
+// The value in the shader record; nullopt if it is unknown.
+std::optional<ValueRange> ValueRanges::Impl::recordRange(const Access& access, const Type& type, const Path& path) {
+  if (context.record.empty() || (!isInteger(type) && !isFloat(type))) return {};
+  if (!layout) layout.emplace(module);
+  std::vector<std::optional<std::uint32_t>> indices = access.indices;
+  indices.insert(indices.end(), path.begin(), path.end());
+  const std::optional<std::uint64_t> offset = layout->offsetOf(access.type, indices);
+  const std::size_t bytes = type.width / 8;
+  if (!offset || *offset > context.record.size() || bytes > context.record.size() - *offset) return {};
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, context.record.data() + *offset, std::min(bytes, sizeof bits));
+  if (isInteger(type)) return fitted(type, ValueRange::of(stored(type, bits)));
+  const float number = std::bit_cast<float>(bits);
+  return std::isnan(number) ? onlyNan() : ValueRange::of(double{number} + 0.0);
 }
 
 void ValueRanges::Impl::addLimit(Evaluator& in, Id value, const Path& path, double min, double max) {

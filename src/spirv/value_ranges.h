@@ -7,9 +7,11 @@
 #ifndef QUINTET_SPIRV_VALUE_RANGES_H
 #define QUINTET_SPIRV_VALUE_RANGES_H
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,7 @@ struct ValueContext {
   // Members of structures in buffers, by the names of structure and member; one range per component, or one for all.
   std::map<std::pair<std::string, std::string>, std::vector<ValueRange>> members;
   std::optional<ValueRange> hitAttribute;  // of each component
+  std::span<const std::byte> record;       // data of the shader record, after the handle; empty if unknown
   bool noNan = false;                      // leaves out NaN, except for a value that is always NaN
 };
 

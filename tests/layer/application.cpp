@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "application.h"
 
+#include <unistd.h>
 #include <vulkan/vulkan.h>
 #include <shaderc/shaderc.hpp>
 
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -67,6 +69,13 @@ double threadSeconds() {
   timespec time{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+std::uint64_t residentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t all = 0, resident = 0;
+  file >> all >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 struct Memory {
@@ -185,6 +194,8 @@ class Vulkan {
         structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &structures);
     features.bufferDeviceAddress = VK_TRUE;
     features.scalarBlockLayout = VK_TRUE;
+    features.runtimeDescriptorArray = features.shaderStorageBufferArrayNonUniformIndexing = VK_TRUE;
+    features.descriptorBindingVariableDescriptorCount = VK_TRUE;
     auto newer =
         structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &features);
     newer.maintenance4 = VK_TRUE;
@@ -347,18 +358,27 @@ class Vulkan {
     constexpr VkShaderStageFlags kAll = VK_SHADER_STAGE_ALL;
     const VkDescriptorSetLayoutBinding bindings[] = {
         {0, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, kAll, nullptr},
-        {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, kAll, nullptr}};
-    VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, nullptr, 0, 2, bindings};
+        {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, kAll, nullptr},
+        {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, app_.buffers, kAll, nullptr}};
+    const std::uint32_t count = app_.buffers > 0 ? 3 : 2;
+    const VkDescriptorBindingFlags flags[] = {0, 0, VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT};
+    const VkDescriptorSetLayoutBindingFlagsCreateInfo flagsInfo{
+        VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO, nullptr, count, flags};
+    VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                        app_.setBuffers ? &flagsInfo : nullptr, 0, count, bindings};
     require(vkCreateDescriptorSetLayout(device_, &set, nullptr, &setLayout_), "vkCreateDescriptorSetLayout");
     VkPipelineLayoutCreateInfo layout{
         VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 1, &setLayout_, 0, nullptr};
     require(vkCreatePipelineLayout(device_, &layout, nullptr, &layout_), "vkCreatePipelineLayout");
     const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1},
-                                          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1}};
+                                          {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + app_.buffers}};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, nullptr, 0, 1, 2, sizes};
     require(vkCreateDescriptorPool(device_, &pool, nullptr, &descriptors_), "vkCreateDescriptorPool");
-    VkDescriptorSetAllocateInfo allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr, descriptors_, 1,
-                                           &setLayout_};
+    const std::uint32_t setBuffers = app_.setBuffers.value_or(app_.buffers);
+    const VkDescriptorSetVariableDescriptorCountAllocateInfo variable{
+        VK_STRUCTURE_TYPE_DESCRIPTOR_SET_VARIABLE_DESCRIPTOR_COUNT_ALLOCATE_INFO, nullptr, 1, &setBuffers};
+    VkDescriptorSetAllocateInfo allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                           app_.setBuffers ? &variable : nullptr, descriptors_, 1, &setLayout_};
     require(vkAllocateDescriptorSets(device_, &allocation, &set_), "vkAllocateDescriptorSets");
     result_ = allocate(kHeight * 64 * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     VkWriteDescriptorSetAccelerationStructureKHR structure{
@@ -375,6 +395,12 @@ class Vulkan {
     writes[0].pNext = &structure;
     writes[1].pBufferInfo = &buffer;
     vkUpdateDescriptorSets(device_, 2, writes, 0, nullptr);
+    const std::vector<VkDescriptorBufferInfo> all(setBuffers, buffer);
+    VkWriteDescriptorSet array = writes[1];
+    array.dstBinding = 2;
+    array.descriptorCount = setBuffers;
+    array.pBufferInfo = all.data();
+    if (setBuffers > 0) vkUpdateDescriptorSets(device_, 1, &array, 0, nullptr);
   }
 
   // The stages and groups of a pipeline or a library, with the memory that their create infos need.
@@ -509,14 +535,44 @@ class Vulkan {
     return pipeline;
   }
 
+  // The hit groups of Application::hitVariants.
+  void addVariants(Parts& parts) {
+    std::vector<std::vector<std::uint32_t>> texts;
+    for (std::uint32_t k = 0; k < std::min(app_.hitVariants, Application::kVariantTexts); ++k) {
+      const std::string file = "v" + std::to_string(k) + ".rchit";
+      texts.push_back(compile(file, app_.shaders.at(file), app_.debugInfo));
+    }
+    for (std::uint32_t i = 0; i < app_.hitVariants; ++i) {
+      words_.push_back(texts[i % texts.size()]);
+      std::ranges::replace(words_.back(), Application::kVariantMark, i);
+      const VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0,
+                                          words_.back().size() * 4, words_.back().data()};
+      auto stage = structure<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+      stage.stage = VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
+      stage.pName = "main";
+      require(vkCreateShaderModule(device_, &info, nullptr, &stage.module), "vkCreateShaderModule");
+      modules_.push_back(stage.module);
+      auto group =
+          structure<VkRayTracingShaderGroupCreateInfoKHR>(VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
+      group.type = VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR;
+      group.generalShader = group.anyHitShader = group.intersectionShader = VK_SHADER_UNUSED_KHR;
+      group.closestHitShader = static_cast<std::uint32_t>(parts.stages.size());
+      parts.stages.push_back(stage);
+      parts.groups.push_back(group);
+    }
+  }
+
   void createPipeline() {
     const bool library = usesLibrary();
-    words_.reserve(64), moduleInfos_.reserve(64), identifiers_.reserve(64), identifierInfos_.reserve(64);
+    words_.reserve(64 + app_.hitVariants);
+    moduleInfos_.reserve(64), identifiers_.reserve(64), identifierInfos_.reserve(64);
     Parts own, hits;
     addGeneral(own, "a.rgen");
     for (const std::string& miss : app_.misses) addGeneral(own, miss);
     for (const std::string& callable : app_.callables) addGeneral(own, callable);
     for (const Application::HitGroup& hit : app_.hitGroups) addHit(library ? hits : own, hit);
+    for (const std::string& generation : app_.otherGenerations) addGeneral(own, generation);
+    addVariants(own);
     groupCount_ = static_cast<std::uint32_t>(own.groups.size() + hits.groups.size());
     auto info = structure<VkPipelineLibraryCreateInfoKHR>(VK_STRUCTURE_TYPE_PIPELINE_LIBRARY_CREATE_INFO_KHR);
     if (library) {
@@ -535,6 +591,7 @@ class Vulkan {
     pipeline_ = create(own, 0, library ? &info : nullptr, app_.modules == Modules::deferred);
     run_.creationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run_.creationCpuSeconds = threadSeconds() - cpu;
+    run_.residentBytes = residentBytes();
     for (std::thread& other : others) other.join();
     if (app_.exit != Exit::no) std::exit(0);
     VkDebugUtilsObjectNameInfoEXT name{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr,

@@ -35,7 +35,11 @@ struct Application {
   };
   std::vector<std::string> misses{"a.rmiss"}, callables;
   std::vector<HitGroup> hitGroups{{"a.rchit", "", ""}};
-  std::uint32_t hitCopies = 1;  // of each hit group, with stages of their own from the same modules
+  std::vector<std::string> otherGenerations;  // of the pipeline; no trace uses them
+  std::uint32_t hitCopies = 1;                // of each hit group, with stages of their own from the same modules
+  // More hit groups, each with a module of its own: shader i is "vN.rchit", N = i modulo kVariantTexts, with i for kVariantMark.
+  std::uint32_t hitVariants = 0;
+  static constexpr std::uint32_t kVariantTexts = 16, kVariantMark = 0x51DE5EED;
   std::uint32_t depth = 1;
   std::map<std::uint32_t, std::uint32_t> constants;  // of ray generation
   Modules modules = Modules::handles;
@@ -47,6 +51,9 @@ struct Application {
   bool hostBuilds = false;         // vkBuildAccelerationStructuresKHR, with the layer of host_driver.cpp and width 0
   std::uint32_t recordOffset = 0;  // of the instance
   std::uint32_t customIndex = 0;   // of the instance
+  std::uint32_t buffers = 0;       // length of an array of buffers in binding 2 of the layout; 0 for no binding
+  // The set has fewer buffers than the layout (VARIABLE_DESCRIPTOR_COUNT).
+  std::optional<std::uint32_t> setBuffers;
   std::optional<std::uint32_t> stack;  // vkCmdSetRayTracingPipelineStackSizeKHR
 
   // Shader binding table. Each region starts at a multiple of 256 bytes.
@@ -76,12 +83,13 @@ struct RunResult {
   std::vector<Message> messages;    // of the layer under test: ids that start with Q
   std::vector<std::string> others;  // of the validation layers
   std::vector<float> pixels;
-  double creationSeconds = 0;     // of the pipeline
-  double creationCpuSeconds = 0;  // of the calling thread
-  double firstSeconds = 0;        // of the first submission, from recording to completion
-  double traceSeconds = 0;        // of the others
-  double recordCpuSeconds = 0;    // of the calling thread, to record and submit them
-  std::string error;              // of a Vulkan call; empty if all succeeded
+  double creationSeconds = 0;       // of the pipeline
+  double creationCpuSeconds = 0;    // of the calling thread
+  std::uint64_t residentBytes = 0;  // of the process, after the creation of the pipeline
+  double firstSeconds = 0;          // of the first submission, from recording to completion
+  double traceSeconds = 0;          // of the others
+  double recordCpuSeconds = 0;      // of the calling thread, to record and submit them
+  std::string error;                // of a Vulkan call; empty if all succeeded
 };
 
 RunResult runApplication(const Application& application);

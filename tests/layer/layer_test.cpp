@@ -129,6 +129,23 @@ std::function<void(Application&)> editTable(
   };
 }
 
+// The closest-hit shader reads one of four buffers.
+void indexBuffers(Application& app, const std::string& index) {
+  app.buffers = 4;
+  replaceClosestHit(app, R"(#extension GL_EXT_nonuniform_qualifier : require
+layout(shaderRecordEXT, std430) buffer Record { uint kind, slot; } record;
+layout(set = 0, binding = 2, std430) buffer Tint { float value; } tints[];
+void main() { payload = Payload(vec3(weights, tints[nonuniformEXT()" +
+                             index + ")].value), gl_HitTEXT); }");
+}
+
+// The second word of the first hit record.
+void setRecord(Application& app, std::uint32_t word) {
+  app.editTable = [word](std::vector<std::byte>& bytes, std::vector<Application::Region>& regions) {
+    std::memcpy(bytes.data() + regions[2].offset + 32 + sizeof word, &word, sizeof word);
+  };
+}
+
 std::vector<Mistake> mistakes() {
   return {
       {"PayloadTypeOfMiss", "Q101",
@@ -289,6 +306,25 @@ void main() {
          app.customIndex = 2;
          app.width = 0;
        }},
+      {"CustomIndexBeyondDescriptors", "Q711",
+       [](Application& app) {
+         indexBuffers(app, "gl_InstanceCustomIndexEXT");
+         app.customIndex = 4;
+         app.width = 0;
+       }},
+      {"CustomIndexBeyondTheBoundSet", "Q711",
+       [](Application& app) {
+         indexBuffers(app, "gl_InstanceCustomIndexEXT");
+         app.customIndex = 2;
+         app.setBuffers = 2;
+         app.width = 0;
+       }},
+      {"RecordIndexBeyondDescriptors", "Q711",
+       [](Application& app) {
+         indexBuffers(app, "record.slot");
+         setRecord(app, 4);
+         app.width = 0;
+       }},
       {"TrianglesUseAProceduralGroup", "Q609",
        [](Application& app) {
          useBoxes(app);
@@ -375,6 +411,26 @@ TEST_P(LayerCorrect, IsNotReported) {
   if (feature == "Opaque") app.opaque = true;
   if (feature == "NoDebugInfo") app.debugInfo = false;
   if (feature == "Stack") app.stack = 1u << 13;  // NVIDIA loses the device with 64 KiB
+  if (feature == "Descriptors") {
+    indexBuffers(app, "record.slot");
+    setRecord(app, 3);
+  }
+  if (feature == "DescriptorsOfTheSet") {
+    indexBuffers(app, "gl_InstanceCustomIndexEXT");
+    app.customIndex = 1;
+    app.setBuffers = 2;
+  }
+  if (feature == "GuardedRecord") {
+    indexBuffers(app, "record.slot");
+    setRecord(app, 0xFFFFFFFF);
+    replace(app.shaders.at("a.rchit"), "payload = Payload(",
+            "payload = Payload(vec3(0), 1.0);\n  if (record.slot < 4u) payload = Payload(");
+  }
+  if (feature == "OtherGeneration") {  // with tables of its own
+    app.otherGenerations = {"b.rgen"};
+    app.shaders["b.rgen"] = app.shaders.at("a.rgen");
+    replace(app.shaders.at("b.rgen"), "0xFF, 0, 1, 0,", "0xFF, 3, 1, 5,");
+  }
   if (feature == "Constants") {
     replace(app.shaders.at("a.rgen"), "void main() {", "layout(constant_id = 0) const uint kMiss = 7u;\nvoid main() {");
     replace(app.shaders.at("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, kMiss,");
@@ -391,7 +447,8 @@ TEST_P(LayerCorrect, IsNotReported) {
 INSTANTIATE_TEST_SUITE_P(Layer, LayerCorrect,
                          testing::Values("Triangles", "Boxes", "Callable", "Shadow", "AnyHit", "Inlined", "Library",
                                          "Flags2", "Deferred", "Indirect", "Indirect2", "Opaque", "NoDebugInfo",
-                                         "Stack", "Constants"),
+                                         "Stack", "Constants", "Descriptors", "DescriptorsOfTheSet", "GuardedRecord",
+                                         "OtherGeneration"),
                          [](const auto& tested) { return tested.param; });
 
 class LayerCreation : public testing::TestWithParam<Modules> {};
@@ -733,6 +790,78 @@ TEST(LayerCost, DISABLED_PrintsTimesOfManyHitGroups) {
               << " s with the layer (" << medianOf(relative) * 100.0 << " %), wall clock " << medianOf(wall[0]) << ", "
               << medianOf(wall[1]) << " s" << std::endl;
   }
+}
+
+// The texts of Application::hitVariants: 16 shaders that differ in their code. 1373527789 is kVariantMark.
+void addVariantTexts(Application& app) {
+  for (std::uint32_t k = 0; k < Application::kVariantTexts; ++k) {
+    std::string text = R"(struct Payload { vec3 color; float t; };
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 weights;
+float hash(uint seed) { seed = seed * 747796405u + 2891336453u; return float(seed >> 8) * (1.0 / 16777216.0); }
+void main() {
+  vec3 color = vec3(hash(uint(gl_PrimitiveID) + 1373527789u), weights);
+)";
+    for (std::uint32_t line = 0; line < 4 + 2 * k; ++line)
+      text += "  if (weights.x > " + std::to_string(0.01 * (line + 1)) + ") color = mix(color, color.yzx, hash(" +
+              std::to_string(line * 7 + k) + "u));\n";
+    text += "  payload = Payload(color * dot(gl_WorldRayDirectionEXT, vec3(0, 0, 1)), gl_HitTEXT);\n}\n";
+    app.shaders["v" + std::to_string(k) + ".rchit"] = std::move(text);
+  }
+}
+
+TEST(Layer, ChecksEachOfManyModules) {
+  Application app = withLayer();
+  addVariantTexts(app);
+  app.hitVariants = 24;
+  app.submissions = 0;
+  replace(app.shaders.at("v5.rchit"), "vec2 weights", "vec3 weights");
+  replace(app.shaders.at("v5.rchit"), "1373527789u), weights)", "1373527789u), weights.xy)");
+  const RunResult result = runApplication(app);
+  EXPECT_EQ(result.error, "");
+  // Of the stages 7 and 23.
+  EXPECT_THAT(idsOf(result), ElementsAre("Q202", "Q202")) << textsOf(result);
+}
+
+// The cost of pipelines with many different modules: creation without and with the layer, and once with wait=1, where it includes
+// the check. VARIANTS sets the number of modules, PAIRS that of pairs.
+TEST(LayerCost, DISABLED_PrintsTimesOfManyModules) {
+  const auto number = [](const char* name, int other) {
+    const char* given = std::getenv(name);
+    return given ? std::atoi(given) : other;
+  };
+  std::vector<double> cpu[2], wall[2], relative;
+  const auto run = [&](bool layer) {
+    Application app = withLayer(layer ? std::vector<std::string>{kLayer} : std::vector<std::string>{});
+    addVariantTexts(app);
+    app.hitVariants = static_cast<std::uint32_t>(number("VARIANTS", 2000));
+    app.submissions = 0;
+    const RunResult result = runApplication(app);
+    EXPECT_EQ(result.error, "");
+    EXPECT_THAT(result.messages, IsEmpty()) << textsOf(result).substr(0, 500);
+    return result;
+  };
+  const char* settings = std::getenv("QUINTET_LINK_CHECK");
+  const std::string before = settings ? settings : "";
+  const RunResult plain = run(false);
+  ::setenv("QUINTET_LINK_CHECK", "wait=1", 1);
+  const RunResult waited = run(true);
+  const double megabytes = (static_cast<double>(waited.residentBytes) - static_cast<double>(plain.residentBytes)) / 1e6;
+  std::cout << "with wait=1: " << waited.creationSeconds << " s instead of " << plain.creationSeconds << " s, "
+            << megabytes << " MB more" << std::endl;
+  ::setenv("QUINTET_LINK_CHECK", before.c_str(), 1);
+  for (int i = 0; i < number("PAIRS", 5); ++i) {
+    for (const int k : {i % 2, 1 - i % 2}) {
+      const RunResult result = run(k == 1);
+      cpu[k].push_back(result.creationCpuSeconds);
+      wall[k].push_back(result.creationSeconds);
+    }
+    relative.push_back(cpu[1].back() / cpu[0].back() - 1.0);
+  }
+  if (relative.empty()) return;
+  std::cout << "creation CPU " << medianOf(cpu[0]) << " s without, " << medianOf(cpu[1]) << " s with the layer ("
+            << medianOf(relative) * 100.0 << " %), wall clock " << medianOf(wall[0]) << ", " << medianOf(wall[1])
+            << " s" << std::endl;
 }
 
 // Keeps the driver's library loaded: NVIDIA's cannot be loaded any number of times in a process (static TLS).

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 
@@ -123,10 +124,48 @@ class GroupsReader {
     return name;
   }
 
+  // A stage of a record: "file.spv", null, or { "module": "file.spv", "record": [ … ] }.
+  std::string recordStage(const Node& node, DescribedPipeline& pipeline, RecordData& data) const {
+    if (!node.json.is_object()) return stage(node, pipeline);
+    checkMembers(node, {"module", "record"});
+    if (const auto record = member(node, "record")) data = recordData(*record);
+    const auto module = member(node, "module");
+    if (!module) fail(node, "'module' is missing; name the module of the record");
+    return stage(*module, pipeline);
+  }
+
+  // The words after the handle.
+  RecordData recordData(const Node& node) const {
+    constexpr std::size_t kMaxWords = 1024;  // 4096 bytes, the largest stride
+    const std::vector<Node> words = elements(node);
+    if (words.size() > kMaxWords) fail(node, fmt::format("has more than {} elements", kMaxWords));
+    RecordData data(words.size() * sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const std::uint32_t word = bitsOf(words[i]).front();
+      std::memcpy(data.data() + i * sizeof word, &word, sizeof word);
+    }
+    return data;
+  }
+
+  void addDescriptors(const Node& node, PipelineGroups& groups) const {
+    for (const Node& element : elements(node)) {
+      requireObject(element);
+      checkMembers(element, {"set", "binding", "count"});
+      const auto number = [&](const char* name, std::uint32_t min) {
+        const auto found = member(element, name);
+        if (!found) fail(element, fmt::format("'{}' is missing", name));
+        return integer(*found, min, std::numeric_limits<std::uint32_t>::max());
+      };
+      const DescriptorSlot slot{number("set", 0), number("binding", 0)};
+      if (!groups.descriptorCounts.emplace(slot, number("count", 1)).second)
+        fail(element, fmt::format("set {} and binding {} are listed twice", slot.first, slot.second));
+    }
+  }
+
   DescribedPipeline pipeline(const Node& node) const {
     requireObject(node);
-    checkMembers(
-        node, {"name", "recursion_depth", "ray_generation", "miss", "hit", "callable", "specialization", "instances"});
+    checkMembers(node, {"name", "recursion_depth", "ray_generation", "miss", "hit", "callable", "specialization",
+                        "instances", "descriptors"});
     DescribedPipeline result;
     PipelineGroups& groups = result.groups;
     groups.noun = "pipeline";
@@ -139,22 +178,28 @@ class GroupsReader {
     const auto generation = member(node, "ray_generation");
     if (!generation) fail(node, "'ray_generation' is missing; name the module of the ray generation shader");
     const auto addGeneration = [&](const Node& element) {
-      const std::string name = stage(element, result);
+      RecordData data;
+      const std::string name = recordStage(element, result, data);
       if (name.empty()) fail(element, "must name a module");
       groups.rayGenerations.push_back(name);
+      if (!data.empty()) groups.recordData.rayGeneration[name] = std::move(data);
     };
     if (generation->json.is_array())
       for (const Node& element : elements(*generation)) addGeneration(element);
     else
       addGeneration(*generation);
     if (const auto misses = member(node, "miss"))
-      for (const Node& element : elements(*misses)) groups.misses.push_back({{}, stage(element, result), {}, 0});
+      for (const Node& element : elements(*misses))
+        groups.misses.push_back({{}, recordStage(element, result, groups.recordData.misses.emplace_back()), {}, 0});
     if (const auto callables = member(node, "callable"))
-      for (const Node& element : elements(*callables)) groups.callables.push_back({{}, stage(element, result), {}, 0});
+      for (const Node& element : elements(*callables))
+        groups.callables.push_back(
+            {{}, recordStage(element, result, groups.recordData.callables.emplace_back()), {}, 0});
     if (const auto hits = member(node, "hit"))
       for (const Node& element : elements(*hits)) addHitGroup(element, result);
     if (const auto values = member(node, "specialization")) addSpecialization(*values, result);
     if (const auto instances = member(node, "instances")) addInstances(*instances, groups);
+    if (const auto descriptors = member(node, "descriptors")) addDescriptors(*descriptors, groups);
     return result;
   }
 
@@ -162,13 +207,15 @@ class GroupsReader {
     program::HitGroup group;
     group.name = std::to_string(pipeline.groups.hitGroups.size());
     program::HitShaders& shaders = group.shaders[""];
+    RecordData& data = pipeline.groups.recordData.hits.emplace_back();
     if (!node.json.is_null()) {
       requireObject(node);
-      checkMembers(node, {"name", "closest_hit", "any_hit", "intersection"});
+      checkMembers(node, {"name", "closest_hit", "any_hit", "intersection", "record"});
       if (const auto name = member(node, "name")) group.name = text(*name);
       if (const auto closest = member(node, "closest_hit")) shaders.closestHit = stage(*closest, pipeline);
       if (const auto any = member(node, "any_hit")) shaders.anyHit = stage(*any, pipeline);
       if (const auto intersection = member(node, "intersection")) shaders.intersection = stage(*intersection, pipeline);
+      if (const auto record = member(node, "record")) data = recordData(*record);
     }
     pipeline.groups.hitGroups.push_back(std::move(group));
   }

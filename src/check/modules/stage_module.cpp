@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "spirv/constant_choices.h"
 #include "spirv/plain_code.h"
 #include "spirv/plain_lines.h"
 #include "spirv/reorder_code.h"
@@ -73,11 +74,14 @@ std::optional<ModuleSummary> summarize(const std::vector<std::uint32_t>& words, 
 ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t>& words,
                         const spirv::EntryPoint& entryPoint,
                         const std::optional<shader::SpecializationValues>& values) {
-  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false, false};
+  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false, false,
+                    false};
   constexpr int kMaxUnknown = 64;
   std::vector<std::uint32_t> plain =
       spirv::withPlainCode(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)));
   const bool isRewritten = spirv::usesReorderExt(words);
+  if (values)
+    if (const auto module = spirv::Module::read(plain)) stage.isVariant = spirv::constantsChoose(*module);
   stage.isStub = stage.kind == shader::Stage::intersection && hasNoStatements(plain);
   for (int i = 0; i < kMaxUnknown; ++i) {
     stage.problem.clear();

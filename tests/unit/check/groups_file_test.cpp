@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "base/error.h"
 #include "check/modules/suppression_list.h"
 
@@ -28,8 +30,9 @@ TEST(GroupsFile, DescribesRecordsInTheirOrder) {
   const auto pipelines = parseGroups("groups.json", R"({
     // comments are allowed
     "name": "sky", "recursion_depth": 2, "ray_generation": "a.spv",
-    "miss": ["b.spv", null, "lib.spv#shadow"],
-    "hit": [{"name": "ball", "closest_hit": "c.spv", "intersection": "d.spv"}, null],
+    "miss": ["b.spv", null, {"module": "lib.spv#shadow", "record": [-1, 0.5]}],
+    "hit": [{"name": "ball", "closest_hit": "c.spv", "intersection": "d.spv", "record": [7]}, null],
+    "descriptors": [{"set": 1, "binding": 2, "count": 16}],
     "callable": ["e.spv"],
     "specialization": {"a.spv": {"0": 4, "1": -1, "2": 0.5, "3": true}},
     "instances": [{"record_offset": 1, "mask": 3, "custom_index": 7, "geometries": [{"type": "aabbs", "opaque": true}, {"type": "triangles"}]}]
@@ -44,6 +47,17 @@ TEST(GroupsFile, DescribesRecordsInTheirOrder) {
   EXPECT_EQ(p.stages.at("lib.spv#shadow").entryPoint, "shadow");
   ASSERT_EQ(p.groups.hitGroups.size(), 2u);
   EXPECT_EQ(p.groups.hitGroups[0].shaders.at("").intersection, "d.spv");
+  using Words = std::vector<std::uint32_t>;
+  const auto wordsOf = [](const RecordData& data) {
+    Words words(data.size() / 4);
+    std::memcpy(words.data(), data.data(), data.size());
+    return words;
+  };
+  ASSERT_EQ(p.groups.recordData.misses.size(), 3u);
+  EXPECT_TRUE(p.groups.recordData.misses[0].empty());
+  EXPECT_EQ(wordsOf(p.groups.recordData.misses[2]), (Words{0xFFFFFFFFu, 0x3F000000u}));
+  EXPECT_EQ(wordsOf(p.groups.recordData.hits[0]), Words{7});
+  EXPECT_EQ(p.groups.descriptorCounts.at({1, 2}), 16u);
   EXPECT_EQ(p.specialization.at("a.spv").at(1), std::vector<std::uint32_t>{0xFFFFFFFFu});
   EXPECT_EQ(p.specialization.at("a.spv").at(2), std::vector<std::uint32_t>{0x3F000000u});
   ASSERT_TRUE(p.groups.instances);
@@ -72,6 +86,15 @@ TEST(GroupsFile, NamesTheJsonPathOfErrors) {
               HasSubstr("/instances/0/geometries/0/type: unknown type 'box'"));
   EXPECT_THAT(errorOf(R"({"ray_generation": "a", "instances": [{"custom_index": 16777216, "geometries": []}]})"),
               HasSubstr("/instances/0/custom_index: must be an"));
+  EXPECT_THAT(errorOf(R"({"ray_generation": "a", "miss": [{"record": [1]}]})"),
+              HasSubstr("/miss/0: 'module' is missing"));
+  EXPECT_THAT(errorOf(R"({"ray_generation": {"module": "a", "record": ["x"]}})"),
+              HasSubstr("/ray_generation/record/0: must be a boolean, an integer"));
+  EXPECT_THAT(errorOf(R"({"ray_generation": "a", "descriptors": [{"set": 0, "binding": 1}]})"),
+              HasSubstr("/descriptors/0: 'count' is missing"));
+  EXPECT_THAT(errorOf(R"({"ray_generation": "a", "descriptors": [{"set": 0, "binding": 1, "count": 2},
+                                                                 {"set": 0, "binding": 1, "count": 3}]})"),
+              HasSubstr("/descriptors/1: set 0 and binding 1 are listed twice"));
   EXPECT_THAT(errorOf(R"({"pipelines": []})"), HasSubstr("/pipelines: the list is empty"));
 }
 

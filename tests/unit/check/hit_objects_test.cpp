@@ -183,6 +183,33 @@ TEST(HitObjects, ConditionsGuardReads) {
   expectReports(p, {"Q104 a.rgen:11"});
 }
 
+// A condition that holds for the shader that does not write the member is no guard.
+TEST(HitObjects, ConditionsOfTheWrongWayDoNotGuardReads) {
+  const std::string silentMiss =
+      "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() { color.xyz = vec3(1); }\n";
+  const std::string silentHit =
+      "layout(location = 0) rayPayloadInEXT vec4 color;\nvoid main() { color.xyz = vec3(2); }\n";
+  const auto read = [&](const std::string& condition, bool missIsSilent, const std::string& filling = "") {
+    RawPipeline p =
+        withBody(std::string("hitObjectNV hit;\n") + kTrace + kExecute + filling + "float w = 1.0;\nif (" + condition +
+                 ") w = color.w;\n" + "imageStore(result, ivec2(gl_LaunchIDEXT.xy), vec4(color.xyz, w));\n");
+    p.text(missIsSilent ? "a.rmiss" : "a.rchit") = missIsSilent ? silentMiss : silentHit;
+    return p;
+  };
+  for (const bool missIsSilent : {false, true}) {
+    const char* right = missIsSilent ? "hitObjectIsHitNV(hit)" : "hitObjectIsMissNV(hit)";
+    const char* wrong = missIsSilent ? "hitObjectIsMissNV(hit)" : "hitObjectIsHitNV(hit)";
+    expectReports(read(right, missIsSilent), {});
+    expectReports(read(std::string("!") + wrong, missIsSilent), {});
+    expectReports(read(wrong, missIsSilent), {"Q104 a.rgen:11"});
+    expectReports(read(std::string("!") + right, missIsSilent), {"Q104 a.rgen:11"});
+    // What else the hit object says can exclude the shader.
+    expectReports(read("hitObjectGetHitKindNV(hit) == 254u", missIsSilent), {});
+    // The condition asks about the next ray.
+    expectReports(read(wrong, missIsSilent, kTrace), {});
+  }
+}
+
 TEST(HitObjects, AnObjectWithSeveralSourcesIsNotReported) {
   const std::string record = "hitObjectRecordMissNV(hit, 1, vec3(0), 0.001, vec3(0, 0, 1), 100.0);\n";
   RawPipeline p = withBody(std::string("hitObjectNV hit;\n") + kTrace + "if (hitObjectIsMissNV(hit)) " + record +
@@ -268,6 +295,22 @@ TEST(HitObjects, CandidatesAreThoseOfTheTrace) {
   std::string& text = p.text("a.rgen");
   text.replace(text.find("gl_RayFlagsNoneEXT"), 18, "gl_RayFlagsOpaqueEXT");
   expectReports(p, {"Q610 a.rahit:4"});
+}
+
+// What SPIRV-Tools does not know about a hit does not keep the check from the module.
+TEST(HitObjects, QueriesOfClustersAreChecked) {
+  RawPipeline p = withBody(std::string("hitObjectNV hit;\n") + kTrace + kExecute +
+                           "if (hitObjectGetPrimitiveIndexNV(hit) == 7) color = vec4(1);\n" + kStore);
+  p.text("a.rmiss") = "layout(location = 0) rayPayloadInEXT vec3 color;\nvoid main() { color = vec3(1); }\n";
+  constexpr std::uint32_t kGetClusterId = 5346;
+  p.rewrite = [](const std::vector<std::uint32_t>& given) {
+    std::vector<std::uint32_t> words = given;
+    for (const spirv::RawInstruction& i : spirv::RawInstructions(given))
+      if (i.op == spv::Op::OpHitObjectGetPrimitiveIndexNV)
+        words[i.position] = words[i.position] >> 16 << 16 | kGetClusterId;
+    return words;
+  };
+  EXPECT_THAT(p.check(), ElementsAreArray({"Q101 a.rgen:11"}));
 }
 
 // Closest-hit shaders that trace and execute count as recursion; a search alone runs nothing that could.

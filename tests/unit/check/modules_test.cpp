@@ -232,6 +232,194 @@ TEST(ModuleCheck, ReportsCustomIndicesBeyondAnArray) {
               IsEmpty());
 }
 
+// The launch of a different application can have any size, and three dimensions.
+TEST(ModuleCheck, LaunchesHaveThreeDimensions) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rgen"), "0xFF, 0, 1, 0,", "0xFF, 0, 1, gl_LaunchIDEXT.z,");
+  replace(p.text("a.rgen"), "void main() {", "const float kWeights[4] = float[](1.0, 2.0, 2.0, 1.0);\nvoid main() {");
+  replace(p.text("a.rgen"), ", color);", ", color * kWeights[gl_LaunchIDEXT.x]);");
+  p.groups.misses.push_back({{}, "b.rmiss", {}, 0});
+  p.stages.push_back({"b.rmiss", p.text("a.rmiss"), Stage::miss});
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+// What marks an index as one that differs within a subgroup, and what makes it equal there.
+TEST(ModuleCheck, KnowsIndicesThatAreMarkedOrUniform) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rchit") = R"(#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_KHR_shader_subgroup_ballot : require
+layout(set = 0, binding = 2) uniform texture2D textures[];
+layout(set = 0, binding = 3) uniform sampler linear;
+layout(location = 0) rayPayloadInEXT vec4 color;
+hitAttributeEXT vec2 b;
+void main() {
+  uint index = gl_InstanceCustomIndexEXT;
+  color = textureLod(sampler2D(textures[index], linear), b, 0.0);
+}
+)";
+  EXPECT_THAT(p.check(), ElementsAre("Q704 a.rchit:11"));
+  // As some compilers do: only the image that is sampled has the decoration.
+  RawPipeline marked = p;
+  replace(marked.text("a.rchit"), "textures[index]", "textures[nonuniformEXT(index)]");
+  marked.rewrite = [](const std::vector<std::uint32_t>& words) {
+    std::vector<std::uint32_t> result(words.begin(), words.begin() + 5);
+    std::uint32_t image = 0;
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+      if (static_cast<spv::Op>(words[at] & 0xFFFFu) == spv::Op::OpSampledImage) image = words[at + 2];
+    bool isMarked = false;
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+      std::vector<std::uint32_t> next(words.begin() + static_cast<std::ptrdiff_t>(at),
+                                      words.begin() + static_cast<std::ptrdiff_t>(at + (words[at] >> 16)));
+      if (static_cast<spv::Op>(next[0] & 0xFFFFu) == spv::Op::OpDecorate &&
+          static_cast<spv::Decoration>(next[2]) == spv::Decoration::NonUniform) {
+        next[1] = image;
+        if (std::exchange(isMarked, true)) continue;
+      }
+      result.insert(result.end(), next.begin(), next.end());
+    }
+    return result;
+  };
+  EXPECT_THAT(marked.check(), IsEmpty());
+  replace(p.text("a.rchit"), "index = gl_InstanceCustomIndexEXT",
+          "index = subgroupBroadcastFirst(gl_InstanceCustomIndexEXT)");
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+// Specialization constants that choose what runs: shaders that a pipeline does not use are those of its other variants.
+TEST(ModuleCheck, UnusedStagesOfVariantsAreNotReported) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rgen") = R"(layout(constant_id = 0) const bool kShadows = true;
+layout(constant_id = 1) const uint kSamples = 2;
+layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(set = 0, binding = 1, rgba8) uniform image2D result;
+layout(location = 0) rayPayloadEXT vec4 color;
+layout(location = 1) rayPayloadEXT float lit;
+void main() {
+  vec4 sum = vec4(0);
+  for (uint i = 0; i < kSamples; ++i) {
+    traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFF, 0, 1, 0, vec3(i), 0.001, vec3(0, 0, 1), 100.0, 0);
+    lit = 0.5;
+    if (kShadows) traceRayEXT(tlas, gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, 0, 1, 1, vec3(i), 0.001, vec3(1), 100.0, 1);
+    sum += color * lit;
+  }
+  imageStore(result, ivec2(gl_LaunchIDEXT.xy), sum);
+}
+)";
+  p.stages.push_back(
+      {"b.rmiss", "layout(location = 1) rayPayloadInEXT float lit;\nvoid main() { lit = 1.0; }\n", Stage::miss});
+  p.groups.misses.push_back({{}, "b.rmiss", {}, 0});
+  EXPECT_THAT(p.check(), IsEmpty());
+  p.values = shader::SpecializationValues{{0, {0u}}};
+  EXPECT_THAT(p.check(), IsEmpty());
+  replace(p.text("a.rgen"), "if (kShadows)", "bool traces = kShadows && lit < 1.0; if (traces)");
+  EXPECT_THAT(p.check(), IsEmpty());
+  // A constant that chooses nothing.
+  replace(p.text("a.rgen"), "bool traces = kShadows && lit < 1.0; if (traces)", "if (false)");
+  EXPECT_THAT(p.check(), ElementsAre("Q801 b.rmiss:4"));
+}
+
+// Two hit records of the same shader, each used by an instance: their data are an index and a kind.
+RawPipeline withRecords(std::vector<std::uint32_t> first, std::vector<std::uint32_t> second) {
+  RawPipeline p = cleanPipeline();
+  p.text("a.rchit") = R"(#extension GL_EXT_nonuniform_qualifier : require
+layout(set = 2, binding = 3) uniform sampler2D textures[];
+layout(set = 2, binding = 4, std430) buffer Material { uint textured; vec4 tint; } materials[];
+layout(shaderRecordEXT, std430) buffer Record { uint texture; uint kind; } record;
+layout(location = 0) rayPayloadInEXT vec4 color;
+hitAttributeEXT vec2 b;
+void main() {
+  color = textureLod(textures[record.texture], b, 0.0);
+}
+)";
+  const auto bytesOf = [](const std::vector<std::uint32_t>& words) {
+    const auto* from = reinterpret_cast<const std::byte*>(words.data());
+    return RecordData(from, from + words.size() * sizeof(std::uint32_t));
+  };
+  p.groups.hitGroups.push_back(p.groups.hitGroups[0]);
+  p.groups.recordData.hits = {bytesOf(first), bytesOf(second)};
+  p.groups.descriptorCounts = {{{2, 3}, 4}, {{2, 4}, 2}};
+  p.groups.geometries.resize(1);
+  p.groups.instances = {instanceOf(0, 0, 1), instanceOf(1, 0, 1)};
+  return p;
+}
+
+TEST(ModuleCheck, ReportsIndicesOfRecordsBeyondDescriptors) {
+  const std::vector<Diagnostic> found = withRecords({3, 0}, {4, 0}).diagnostics();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].id, "Q711");
+  EXPECT_EQ(found[0].line, 10);
+  EXPECT_EQ(found[0].text, "the index of 'textures' is 4 (data of hit record 1), but it has 4 elements (index 0 to 3)");
+  EXPECT_THAT(withRecords({3, 0}, {0, 0}).check(), IsEmpty());
+  const auto edited = [](auto edit) {
+    RawPipeline p = withRecords({3, 0}, {4, 0});
+    edit(p);
+    return p.check();
+  };
+  const auto main = [&](const std::string& text) {
+    return edited([&](RawPipeline& p) {
+      replace(p.text("a.rchit"), "color = textureLod(textures[record.texture], b, 0.0);", text);
+    });
+  };
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.descriptorCounts.clear(); }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.recordData.hits.pop_back(); }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.recordData.hits[1].resize(3); }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.tablesKnown = false; }), IsEmpty());
+  // No ray hits the instance of the record.
+  EXPECT_THAT(edited([](RawPipeline& p) { p.groups.instances->pop_back(); }), IsEmpty());
+  EXPECT_THAT(edited([](RawPipeline& p) {
+                replace(p.text("a.rgen"), "0xFF, 0, 1", "1, 0, 1");
+                p.groups.instances->at(1).facts.mask = 2;
+              }),
+              IsEmpty());
+  // Conditions on the record, and on what a buffer says about the material.
+  EXPECT_THAT(main("color = vec4(0); if (record.texture < 4) color = textureLod(textures[record.texture], b, 0.0);"),
+              IsEmpty());
+  EXPECT_THAT(main("color = vec4(0); if (record.kind != 0) color = textureLod(textures[record.texture], b, 0.0);"),
+              IsEmpty());
+  EXPECT_THAT(main("color = record.kind == 0 ? vec4(1) : textureLod(textures[record.texture], b, 0.0);"), IsEmpty());
+  EXPECT_THAT(
+      main("color = vec4(0); if (materials[record.kind].textured != 0) color = textureLod(textures[record.texture], b, "
+           "0.0);"),
+      IsEmpty());
+  EXPECT_THAT(main("color = vec4(0); if (b.x > 0.5) color = textureLod(textures[record.texture], b, 0.0);"),
+              ElementsAre("Q711 a.rchit:10"));
+  // An array of buffers, through two chains.
+  EXPECT_THAT(main("color = materials[record.texture - 2].tint;"), ElementsAre("Q711 a.rchit:10"));
+  EXPECT_THAT(main("color = materials[record.kind].tint;"), IsEmpty());
+}
+
+TEST(ModuleCheck, ReportsConstantIndicesBeyondDescriptors) {
+  RawPipeline p = withRecords({}, {});
+  // Without an index that is not constant, glslang gives the array a size.
+  replace(p.text("a.rchit"), "color = ", "color = textureLod(textures[4], b, 0.0) + ");
+  EXPECT_THAT(p.check(), ElementsAre("Q711 a.rchit:10"));
+  p.groups.descriptorCounts[{2, 3}] = 5;
+  EXPECT_THAT(p.check(), IsEmpty());
+}
+
+TEST(ModuleCheck, ReadsTheDataOfMissRayGenerationAndCallableRecords) {
+  const std::string head = R"(#extension GL_EXT_nonuniform_qualifier : require
+layout(set = 0, binding = 3) uniform sampler2D textures[];
+layout(shaderRecordEXT, std430) buffer Record { vec2 unused; int texture[2]; } record;
+)";
+  const std::vector<std::uint32_t> words{0, 0, 1, 9};
+  const auto* from = reinterpret_cast<const std::byte*>(words.data());
+  const RecordData data(from, from + 16);
+  RawPipeline p = cleanPipeline();
+  p.groups.descriptorCounts = {{{0, 3}, 4}};
+  p.groups.recordData.misses = {data};
+  p.text("a.rmiss") = head +
+                      "layout(location = 0) rayPayloadInEXT vec4 color;\n"
+                      "void main() { color = textureLod(textures[record.texture[1]], vec2(0.5), 0.0); }\n";
+  EXPECT_THAT(p.check(), ElementsAre("Q711 a.rmiss:7"));
+  replace(p.text("a.rmiss"), "texture[1]]", "texture[0]]");
+  EXPECT_THAT(p.check(), IsEmpty());
+  p.groups.recordData.rayGeneration["a.rgen"] = data;
+  replace(p.text("a.rgen"), "layout(set = 0, binding = 0)", head + "layout(set = 0, binding = 0)");
+  replace(p.text("a.rgen"), ", color);", ", color + textureLod(textures[record.texture[1]], vec2(0.5), 0.0));");
+  EXPECT_THAT(p.check(), ElementsAre("Q711 a.rgen:11"));
+}
+
 // A loop of bounces: the closest-hit shader sets the throughput for the next ray, but nothing sets it for the first one.
 TEST(ModuleCheck, ReportsMembersThatAreUnsetForTheFirstRay) {
   const std::string payload = "struct Payload { vec4 color; vec4 throughput; };\n";

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q711: indices beyond an array of constant size. With a scene, the numbers of its instances and geometries count.
+// Q711: indices beyond an array of constant size, or beyond an array of descriptors whose length the pipeline layout has. With a
+// scene, the numbers of its instances and geometries count; with a shader binding table, the data of its records.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
+#include "spirv/control_flow.h"
+#include "spirv/shader_record.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -16,11 +23,36 @@ using spirv::Type;
 using spirv::ValueRange;
 using spv::Op;
 
+// What a buffer, an image or a built-in of the hit says: it can be related to the data of the record, or to the instance.
+bool loadsOfHit(const spirv::Module& module, const spirv::Instruction& i) {
+  if (i.op == Op::OpImageRead || i.op == Op::OpImageFetch || i.op == Op::OpFunctionCall) return true;
+  if (i.op != Op::OpLoad) return false;
+  if (const auto builtIn = spirv::loadedBuiltIn(module, i))
+    return builtIn == spv::BuiltIn::PrimitiveId || builtIn == spv::BuiltIn::InstanceId ||
+           builtIn == spv::BuiltIn::InstanceCustomIndexKHR || builtIn == spv::BuiltIn::RayGeometryIndexKHR;
+  const spirv::Instruction* base = module.definition(module.access(i.at(0)).base);
+  const Type& pointer = module.types().get(base ? base->type : 0);
+  if (pointer.kind != Type::Kind::pointer) return true;
+  switch (static_cast<spv::StorageClass>(pointer.storage)) {
+    case spv::StorageClass::Uniform:
+    case spv::StorageClass::UniformConstant:
+    case spv::StorageClass::StorageBuffer:
+    case spv::StorageClass::PhysicalStorageBuffer:
+    case spv::StorageClass::PushConstant:
+    case spv::StorageClass::ShaderRecordBufferKHR: return true;
+    default: return false;
+  }
+}
+
 class IndexRule {
  public:
-  IndexRule(const spirv::Module& module, const spirv::ValueRanges& ranges, const program::SceneFacts* scene,
-            Report& report)
-      : module_(module), ranges_(ranges), scene_(scene), report_(report) {}
+  IndexRule(const spirv::Module& module, const spirv::ValueRanges& ranges, const CheckInput& input, Report& report)
+      : module_(module),
+        ranges_(ranges),
+        counts_(input.graph.groups.descriptorCounts),
+        scene_(input.scene),
+        isRaw_(!input.graph.usesLibrary),
+        report_(report) {}
 
   void check() {
     for (std::size_t i = 0; i < module_.instructions().size(); ++i) {
@@ -30,15 +62,33 @@ class IndexRule {
     }
   }
 
+  // Only the indices that depend on the data of the record, which `name` is.
+  void checkRecord(const std::string& name) {
+    record_ = name;
+    check();
+  }
+
  private:
+  // The length of an array of descriptors that has none in the module; 0 if it is unknown.
+  std::uint32_t lengthOf(spirv::Id variable) const {
+    if (!module_.variable(variable)) return 0;
+    const auto set = module_.decoration(variable, spv::Decoration::DescriptorSet);
+    const auto binding = module_.decoration(variable, spv::Decoration::Binding);
+    if (!set || !binding) return 0;
+    const auto found = counts_.find({*set, *binding});
+    return found == counts_.end() ? 0 : found->second;
+  }
+
   void checkChain(const spirv::Instruction& chain) {
     const spirv::Instruction* base = module_.definition(chain.at(0));
     spirv::Id type = module_.types().get(base ? base->type : 0).element;
     std::string name = module_.name(chain.at(0));
     for (std::size_t i = 1; i < chain.operands.size(); ++i) {
-      const Type& composite = module_.types().get(type);
+      Type composite = module_.types().get(type);
       const std::optional<std::uint32_t> literal = module_.constantBits(chain.at(i));
-      const bool counted = composite.kind == Type::Kind::array || composite.kind == Type::Kind::vector ||
+      const bool isUnsized = composite.kind == Type::Kind::runtimeArray && i == 1;
+      if (isUnsized) composite.count = lengthOf(chain.at(0));
+      const bool counted = isUnsized || composite.kind == Type::Kind::array || composite.kind == Type::Kind::vector ||
                            composite.kind == Type::Kind::matrix;
       if (counted && composite.count > 0 && (!literal || *literal >= composite.count))
         checkIndex(chain, chain.at(i), composite, name);
@@ -52,11 +102,27 @@ class IndexRule {
     }
   }
 
-  // Checks the index where a load or store uses the pointer.
+  // The loads, stores and texel accesses through the pointer, also through further chains.
+  std::vector<std::size_t> usesOf(const spirv::Instruction& chain) const {
+    std::vector<std::size_t> uses;
+    std::vector<spirv::Id> pointers{chain.result};
+    for (std::size_t k = 0; k < pointers.size(); ++k)
+      for (const std::size_t user : module_.users(pointers[k])) {
+        const spirv::Instruction& use = module_.instructions()[user];
+        if (use.op == Op::OpLoad || use.op == Op::OpStore || use.op == Op::OpImageTexelPointer)
+          uses.push_back(user);
+        else if ((spirv::isAccessChain(use.op) || use.op == Op::OpCopyObject) && use.at(0) == pointers[k])
+          pointers.push_back(use.result);
+      }
+    return uses;
+  }
+
+  // Checks the index where an instruction uses the pointer.
   void checkIndex(const spirv::Instruction& chain, spirv::Id index, const Type& array, const std::string& name) {
-    for (const std::size_t user : module_.users(chain.result)) {
+    const auto isRecord = [&](const spirv::Instruction& i) { return spirv::loadsRecord(module_, i); };
+    if (!record_.empty() && !spirv::dependsOn(module_, index, isRecord)) return;
+    for (const std::size_t user : usesOf(chain)) {
       const spirv::Instruction& use = module_.instructions()[user];
-      if (use.op != Op::OpLoad && use.op != Op::OpStore) continue;
       const ValueRange range = ranges_.rangeAt(user, index);
       if (range.empty()) continue;
       const bool negative = range.max < 0.0;
@@ -64,6 +130,8 @@ class IndexRule {
       if (!value) continue;
       const bool always = negative || range.min >= array.count;
       if (!always && (ranges_.guarded(user, index) || isSelected(use, index))) continue;
+      const std::string cause = causeText(index);
+      if (isRaw_ && !cause.empty() && dependsOnHit(user)) continue;
       // Without debug information, glslang calls a constant array "indexable".
       const bool named = !name.empty() && name != "indexable";
       report_.addOncePerLine("Q711", module_.location(use),
@@ -72,7 +140,7 @@ class IndexRule {
                                          range.constant() ? "is"
                                          : always         ? (negative ? "is at most" : "is at least")
                                                           : "can be",
-                                         *value, causeText(index), array.count,
+                                         *value, cause, array.count,
                                          array.kind == Type::Kind::vector   ? "components"
                                          : array.kind == Type::Kind::matrix ? "columns"
                                                                             : "elements",
@@ -95,8 +163,33 @@ class IndexRule {
                [](const spirv::Instruction& i) { return i.op == Op::OpStore; }) != nullptr;
   }
 
-  // " (gl_InstanceCustomIndexEXT in scene.toml)"
+  // True if a condition that is related to the hit decides whether the instruction runs, or whether its value is used. The index can
+  // be valid wherever the condition holds.
+  bool dependsOnHit(std::size_t user) {
+    const auto isOfHit = [&](const spirv::Instruction& i) { return loadsOfHit(module_, i); };
+    const auto position = module_.position(user);
+    if (!position) return true;
+    const auto [flow, isNew] = flows_.try_emplace(position->function, module_, position->function);
+    for (const std::size_t block : flow->second.controllers(position->block)) {
+      const spirv::Id condition = flow->second.condition(block);
+      if (!ranges_.range(condition).constant() &&
+          spirv::dependsOnDataOrControl(module_, flow->second, condition, isOfHit))
+        return true;
+    }
+    const spirv::Instruction& load = module_.instructions()[user];
+    const auto isLoad = [&](const spirv::Instruction& i) { return &i == &load; };
+    return load.op == Op::OpLoad && spirv::findInUses(
+                                        module_, load.result,
+                                        [&](const spirv::Instruction& i) {
+                                          return i.op == Op::OpSelect &&
+                                                 spirv::dependsOn(module_, i.at(0), isOfHit, isLoad);
+                                        },
+                                        [](const spirv::Instruction& i) { return i.op == Op::OpStore; }) != nullptr;
+  }
+
+  // " (gl_InstanceCustomIndexEXT in scene.toml)", " (data of hit record 3)"
   std::string causeText(spirv::Id index) const {
+    if (!record_.empty()) return fmt::format(" (data of {})", record_);
     if (!scene_) return {};
     const spirv::Instruction* found = spirv::findInSlice(module_, index, [&](const spirv::Instruction& i) {
       const auto builtIn = spirv::loadedBuiltIn(module_, i);
@@ -109,8 +202,12 @@ class IndexRule {
 
   const spirv::Module& module_;
   const spirv::ValueRanges& ranges_;
+  const std::map<DescriptorSlot, std::uint32_t>& counts_;
   const program::SceneFacts* scene_;
+  const bool isRaw_;
   Report& report_;
+  std::string record_;                               // empty for all records
+  std::map<std::size_t, spirv::ControlFlow> flows_;  // by function
 };
 
 }  // namespace
@@ -124,7 +221,10 @@ void checkArrayIndices(const CheckInput& input, Report& report) {
     const spirv::Module& module = stage.facts->module();
     const spirv::ValueRanges ranges(module, graph.context(stage.file, input.scene));
     Report ofStage;
-    IndexRule(module, ranges, input.scene, ofStage).check();
+    IndexRule(module, ranges, input, ofStage).check();
+    if (spirv::indexesByRecord(module))
+      for (const RecordRuns& runs : graph.recordRuns(stage.file))
+        IndexRule(module, spirv::ValueRanges(module, runs.context), input, ofStage).checkRecord(runs.record);
     found[i] = ofStage.take();
   });
   for (std::size_t i = 0; i < found.size(); ++i)

@@ -403,6 +403,7 @@ class MemberRule {
 
   // Reports outermost members that have the same constant after the trace on all paths.
   void reportConstants(const LeafList& read) {
+    if (graph_.hasVariants) return;
     const spirv::Leaves& leaves = tracer_->leaves(payload_->id);
     std::uint32_t done = 0;
     for (const std::uint32_t leaf : read) {

@@ -22,6 +22,8 @@ void addTo(std::vector<LeafGroup>& groups, LeafText text, std::uint32_t leaf, st
 }
 
 std::string nameOf(const spirv::SharedVariable& variable, const std::string& part) {
+  if (variable.name.empty())
+    return part.empty() ? "the variable" : fmt::format("'{}'", part.starts_with('.') ? part.substr(1) : part);
   return fmt::format("'{}{}'", variable.name, part);
 }
 

@@ -147,7 +147,7 @@ class UnwrittenPaths {
     const auto [known, isNew] = leavesOf_.try_emplace(guard.condition);
     if (isNew) known->second = leavesOf(guard.condition);
     const std::optional<std::set<std::uint32_t>>& leaves = known->second;
-    if (!leaves || leaves->empty()) return false;
+    if (!leaves || (leaves->empty() && !asksForHit(guard.condition))) return false;
     std::vector<std::pair<std::uint32_t, std::vector<double>>> samples;
     std::size_t count = 1;
     for (const std::uint32_t leaf : *leaves) {
@@ -184,6 +184,43 @@ class UnwrittenPaths {
     return !constant;
   }
 
+  // What a question about the hit object of the execution has as answer if the shader runs; nullopt for any other instruction.
+  std::optional<double> answer(const spirv::Instruction& query) const {
+    const spirv::Module& module = tracer_.module();
+    const spirv::Instruction& execution = module.instructions()[trace_];
+    if (execution.op != Op::OpHitObjectExecuteShaderNV) return {};
+    const bool isMiss = shader_.module().stage() == spv::ExecutionModel::MissKHR;
+    double result = 0.0;
+    switch (query.op) {
+      case Op::OpHitObjectIsHitNV: result = isMiss ? 0.0 : 1.0; break;
+      case Op::OpHitObjectIsMissNV: result = isMiss ? 1.0 : 0.0; break;
+      case Op::OpHitObjectIsEmptyNV: break;
+      default: return {};
+    }
+    // The object must have the same content in both.
+    const Id object = execution.at(0);
+    const spirv::Instruction* variable = module.definition(object);
+    if (!variable || variable->op != Op::OpVariable || query.at(0) != object) return {};
+    std::vector<std::size_t> fillings;
+    for (const std::size_t user : module.users(object)) {
+      const spirv::Instruction& use = module.instructions()[user];
+      if (!spirv::queriesHitObject(module, use) && use.op != Op::OpHitObjectExecuteShaderNV &&
+          use.op != Op::OpReorderThreadWithHitObjectNV && use.op != Op::OpHitObjectGetAttributesNV)
+        fillings.push_back(user);
+    }
+    const std::size_t index = module.definitionIndex(query.result);
+    if (!tracer_.pathsAfter(trace_).reaches(index, fillings)) return {};
+    const auto refilled = [&](std::size_t filling) {
+      return tracer_.pathsAfter(trace_).reaches(filling, {}) && tracer_.pathsAfter(filling).reaches(index, {trace_});
+    };
+    return std::ranges::any_of(fillings, refilled) ? std::nullopt : std::optional(result);
+  }
+
+  bool asksForHit(Id condition) const {
+    return spirv::dependsOn(tracer_.module(), condition,
+                            [&](const spirv::Instruction& i) { return answer(i).has_value(); });
+  }
+
   // The leaves that the condition reads after the trace; nullopt if it reads the payload in another way.
   std::optional<std::set<std::uint32_t>> leavesOf(Id condition) const {
     const spirv::Module& module = tracer_.module();
@@ -194,9 +231,9 @@ class UnwrittenPaths {
         spirv::dependsOnDataOrControl(module, tracer_.flow(position->function), condition, [&](const auto& i) {
           if (i.op == Op::OpLoad && module.access(i.at(0)).variable == sent_)
             loads.insert(module.definitionIndex(i.result));
-          return spirv::queriesHitObject(module, i);
+          return spirv::queriesHitObject(module, i) && !answer(i);
         });
-    if (ofHitObject) return {};  // it says whether there is a hit
+    if (ofHitObject) return {};  // it says more about the hit
     std::set<std::uint32_t> leaves;
     const auto& accesses = tracer_.accesses();
     for (std::size_t a = 0; a < accesses.size(); ++a) {
@@ -214,6 +251,8 @@ class UnwrittenPaths {
   // The condition in the tracing stage for values of the leaves; nullopt if it depends on anything else.
   std::optional<double> evaluated(Id condition, const std::map<std::uint32_t, double>& values) const {
     return spirv::evaluate(tracer_.module(), condition, [&](Id id) -> std::optional<double> {
+      if (const spirv::Instruction* i = tracer_.module().definition(id))
+        if (const auto known = answer(*i)) return known;
       for (const spirv::AccessFacts& a : tracer_.accesses())
         if (a.reads && a.value == id && a.variable == sent_ && a.leaves.count() == 1)
           if (const auto value = values.find(a.leaves.first); value != values.end()) return value->second;

@@ -49,6 +49,27 @@ bool readsVarying(const spirv::Module& module, const spirv::Instruction& i) {
          variable->storage == Storage::CallableDataKHR || variable->storage == Storage::IncomingCallableDataKHR;
 }
 
+// True if the value is the same in all invocations of a subgroup: engines loop over the different values.
+bool isSubgroupUniform(const spirv::Module& module, spirv::Id value) {
+  constexpr int kMaxCopies = 8;
+  for (int k = 0; k < kMaxCopies; ++k) {
+    const spirv::Instruction* i = module.definition(value);
+    if (!i) return false;
+    switch (i->op) {
+      case Op::OpGroupNonUniformBroadcastFirst:
+      case Op::OpGroupNonUniformBroadcast:
+      case Op::OpSubgroupFirstInvocationKHR:
+      case Op::OpSubgroupReadInvocationKHR: return true;
+      case Op::OpBitcast:
+      case Op::OpCopyObject:
+      case Op::OpUConvert:
+      case Op::OpSConvert: value = i->at(0); break;
+      default: return false;
+    }
+  }
+  return false;
+}
+
 // True if the value, or a condition that chooses it, can differ between the invocations that execute the instruction.
 // The invocations count the steps of a loop together. `cause` becomes a description of the source of the value.
 bool varies(const spirv::Module& module, std::size_t instruction, spirv::Id value, std::string* cause) {
@@ -86,8 +107,16 @@ bool isDescriptorArray(const spirv::Module& module, spirv::Id pointer) {
 bool isNonUniform(const spirv::Module& module, const spirv::Instruction& chain) {
   const auto has = [&](spirv::Id id) { return module.decoration(id, spv::Decoration::NonUniform).has_value(); };
   if (has(chain.result) || has(chain.at(1))) return true;
-  for (const std::size_t user : module.users(chain.result))
-    if (has(module.instructions()[user].result)) return true;
+  // Of an image, the operand of the access must have the decoration, which can be an OpSampledImage of what is loaded.
+  for (const std::size_t user : module.users(chain.result)) {
+    const spirv::Instruction& load = module.instructions()[user];
+    if (has(load.result)) return true;
+    for (const std::size_t next : module.users(load.result)) {
+      const spirv::Instruction& use = module.instructions()[next];
+      if ((use.op == Op::OpSampledImage || use.op == Op::OpImage || use.op == Op::OpCopyObject) && has(use.result))
+        return true;
+    }
+  }
   return false;
 }
 
@@ -112,10 +141,13 @@ void checkDescriptorIndices(const spirv::Module& module, Report& report) {
     const spirv::Instruction& chain = module.instructions()[i];
     if (!isChain(chain.op) || !isDescriptorArray(module, chain.at(0)) || module.isConstant(chain.at(1))) continue;
     std::string cause;
-    if (isNonUniform(module, chain) || !varies(module, i, chain.at(1), &cause)) continue;
+    if (isNonUniform(module, chain) || isSubgroupUniform(module, chain.at(1)) ||
+        !varies(module, i, chain.at(1), &cause))
+      continue;
     const std::string name = module.name(chain.at(0));
     report.addOncePerLine("Q704", module.location(chain, name),
-                          "the index of '" + name + "' depends on " + cause +
+                          "the index of " + (name.empty() ? "an array of descriptors" : "'" + name + "'") +
+                              " depends on " + cause +
                               ", which differs between invocations, but is not marked nonuniformEXT");
   }
 }
