@@ -28,6 +28,27 @@ export interface PipelineGraph {
 
 const baseName = (file: string) => file.replace(/^.*\//, "");
 
+type Trace = PipelineModel["traces"][number];
+
+// Traces of hit objects (shader execution reordering) have two parts, at two lines or in one instruction.
+const traceName = (trace: Trace) => (trace.searches ? "Hit object search" : trace.executes ? "Hit object execution" : "traceRayEXT");
+
+function traceNotes(trace: Trace): string[] {
+  return [
+    ...(trace.inLoop ? ["in a loop"] : []),
+    ...(trace.searches ? ["runs no closest-hit and no miss shader"] : []),
+    ...(trace.executes ? ["runs no intersection and no any-hit shader"] : []),
+  ];
+}
+
+// What the names of such boxes mean; empty if there are none.
+export function hitObjectLegend(model: PipelineModel): string {
+  return [
+    ...(model.traces.some((trace) => trace.searches) ? ["Search: fills a hit object"] : []),
+    ...(model.traces.some((trace) => trace.executes) ? ["Execution: runs the closest-hit or miss shader of a hit object"] : []),
+  ].join(" · ");
+}
+
 export function pipelineGraph(model: PipelineModel): PipelineGraph {
   const nodes: GraphNode[] = [];
   const edges: PipelineEdge[] = [];
@@ -49,7 +70,7 @@ export function pipelineGraph(model: PipelineModel): PipelineGraph {
     add(
       {
         kind: "trace",
-        title: `traceRayEXT, line ${trace.location.line}`,
+        title: `${traceName(trace)}, line ${trace.location.line}`,
         rows: [
           ...(trace.rays.length > 0 ? [["ray", trace.rays.map((ray) => model.rays[ray]).join(", ")] as [string, string]] : []),
           ["flags", trace.flags],
@@ -57,7 +78,7 @@ export function pipelineGraph(model: PipelineModel): PipelineGraph {
           ["record", `offset ${trace.offset}, stride ${trace.stride}`],
           ["miss", trace.miss],
           ["payload", `${trace.payload.type} ${trace.payload.name} (${trace.payload.bytes} B)`],
-          ...(trace.inLoop ? [["", "in a loop"] as [string, string]] : []),
+          ...traceNotes(trace).map((note) => ["", note] as [string, string]),
         ],
         diagnostics: [...trace.diagnostics],
         location: trace.location,

@@ -45,6 +45,8 @@ export interface PipelineModel {
     miss: string;
     payload: { name: string; type: string; bytes: number };
     inLoop: boolean;
+    searches: boolean; // fills a hit object: without the shader at the end of the ray
+    executes: boolean; // runs a hit object: only that shader
     skipsClosestHit: boolean;
     skipsAnyHit: boolean;
     targets: Target[];

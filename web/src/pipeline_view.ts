@@ -3,7 +3,7 @@
 // marked, and those of the selected diagnostic stand out.
 import { h, replace, svg } from "./dom";
 import { layoutGraph } from "./layered_layout";
-import { type GraphNode, pipelineGraph } from "./pipeline_graph";
+import { type GraphNode, hitObjectLegend, pipelineGraph } from "./pipeline_graph";
 import type { PipelineModel } from "./pipeline_model";
 
 const kLine = 16;
@@ -140,6 +140,7 @@ export class PipelineView {
         { class: "pipeline-facts" },
         h("span", {}, facts.join(" · ")),
         model.rays.length > 1 && h("span", { class: "legend" }, model.rays.map((ray, i) => h("span", { class: `ray${i % 6}` }, ray))),
+        hitObjectLegend(model) !== "" && h("span", { class: "hit-objects" }, hitObjectLegend(model)),
         model.traces.some((trace) => trace.targets.some((target) => !target.exact)) && h("span", {}, "Dashed: may not be taken"),
       ),
       h(

@@ -2,13 +2,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { layoutGraph } from "../src/layered_layout";
-import { pipelineGraph } from "../src/pipeline_graph";
+import { hitObjectLegend, pipelineGraph } from "../src/pipeline_graph";
 import type { PipelineModel } from "../src/pipeline_model";
 
 const location = (line: number) => ({ file: "a.rt.glsl", line, column: 3 });
 const trace = (stage: number, line: number, targets: PipelineModel["traces"][number]["targets"]) => ({
   stage, location: location(line), rays: [0], flags: "None", mask: "0xff", offset: "0", stride: "0", miss: "0",
-  payload: { name: "payload", type: "RayPayloadType", bytes: 16 }, inLoop: false, skipsClosestHit: false, skipsAnyHit: false, targets, diagnostics: [],
+  payload: { name: "payload", type: "RayPayloadType", bytes: 16 }, inLoop: false, searches: false, executes: false, skipsClosestHit: false, skipsAnyHit: false, targets, diagnostics: [],
 });
 
 // The lesson on shadows: the closest-hit shader traces again.
@@ -48,6 +48,21 @@ test("groups with the same shaders share a box, and arrows connect what runs", (
   assert.deepEqual(nodes[second]!.location, location(52));
   assert.equal(nodes[hit]!.stage!.kind, "closest-hit");
   assert.deepEqual(nodes[hit]!.rows.filter(([label]) => label === "group").map(([, text]) => text), ["triangles", "boxes"]);
+});
+
+test("searches and executions of hit objects are named as such", () => {
+  const model = shadowModel();
+  assert.equal(hitObjectLegend(model), "");
+  model.traces[0] = { ...model.traces[0]!, searches: true, inLoop: true };
+  model.traces[1] = { ...model.traces[1]!, executes: true };
+  const { nodes } = pipelineGraph(model);
+  const traces = nodes.filter((node) => node.kind === "trace");
+  assert.deepEqual(traces.map((node) => node.title), ["Hit object search, line 30", "Hit object execution, line 52"]);
+  const notes = traces.map((node) => node.rows.filter(([label]) => label === "").map(([, text]) => text));
+  assert.deepEqual(notes, [["in a loop", "runs no closest-hit and no miss shader"], ["runs no intersection and no any-hit shader"]]);
+  assert.equal(hitObjectLegend(model), "Search: fills a hit object · Execution: runs the closest-hit or miss shader of a hit object");
+  model.traces[1] = shadowModel().traces[1]!;
+  assert.equal(hitObjectLegend(model), "Search: fills a hit object");
 });
 
 test("the layout has no overlaps, and edges lead to the right except for cycles", () => {
