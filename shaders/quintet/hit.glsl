@@ -20,13 +20,14 @@ vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2)
   return b / max(1.0, b.x + b.y);
 }
 
-// The members of the payload that are common to all hits: indices in the scene, and t. `seed` is kept.
-HitPayload hitOf(GeometryData geometry, uint seed) {
+// The members of the payload that are common to all hits: indices (instance, geometry, primitive) in the scene, and t.
+// `seed` is kept.
+HitPayload hitOf(uvec3 indices, uint seed) {
   HitPayload hit;
   hit.t = gl_HitTEXT;
-  hit.instance = uint(gl_InstanceCustomIndexEXT);
-  hit.geometry = uint(gl_GeometryIndexEXT);
-  hit.primitive = hitTriangle(geometry);
+  hit.instance = indices.x;
+  hit.geometry = indices.y;
+  hit.primitive = indices.z;
   hit.barycentric = vec2(0.0);
 #ifndef QUINTET_NO_PROCEDURALS
   hit.part = 0u;
@@ -35,10 +36,27 @@ HitPayload hitOf(GeometryData geometry, uint seed) {
   return hit;
 }
 
+HitPayload hitOf(GeometryData geometry, uint seed) {
+  return hitOf(uvec3(gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT, hitTriangle(geometry)), seed);
+}
+
 // The payload of a committed triangle hit; `seed` is kept.
 HitPayload triangleHit(vec2 attributes, uint seed) {
-  const GeometryData geometry = hitGeometry();
-  HitPayload hit = hitOf(geometry, seed);
+  GeometryData geometry;
+  HitPayload hit;
+#ifdef QUINTET_MERGED_INSTANCES
+  const InstanceData instance = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT];
+  if ((instance.flags & kInstanceMerged) != 0u) {
+    const uint64_t merged = packUint2x32(uvec2(instance.firstGeometry, instance.firstLightSlot));
+    const uvec3 indices = Uvec3Array(merged).at[gl_PrimitiveID];
+    geometry = GeometryArray(frame.geometries).at[InstanceArray(frame.instances).at[indices.x].firstGeometry + indices.y];
+    hit = hitOf(indices, seed);
+  } else
+#endif
+  {
+    geometry = hitGeometry();
+    hit = hitOf(geometry, seed);
+  }
 #ifdef QUINTET_RECOMPUTE_BARYCENTRICS
   const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
   Vec3Array positions = Vec3Array(geometry.positions);

@@ -13,6 +13,7 @@ bool isHitStage(const std::string& file) {
 }
 
 Program withHitShaders(Program program, Instrumentation instrumentation) {
+  program.mergesInstances = false;  // these shaders read gl_InstanceCustomIndexEXT
   for (HitGroup& group : program.hitGroups) {
     for (const RayType& ray : program.rays) {
       HitShaders& shaders = group.shaders[ray.name];

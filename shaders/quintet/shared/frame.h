@@ -14,6 +14,9 @@ QT_SHARED_BEGIN
 // InstanceData::flags
 QT_CONSTANT kInstanceMirrored = 1u;  // negative determinant: reverses the winding
 QT_CONSTANT kInstanceOpaque = 2u;    // forced opaque: no any-hit shader runs
+// Several instances in one acceleration structure (render/scene/merged_instances.h). firstGeometry and firstLightSlot are
+// the low and the high word of the address of uvec3[]: gl_PrimitiveID → instance, geometry and primitive in the scene.
+QT_CONSTANT kInstanceMerged = 4u;
 
 // One per TLAS instance, indexed by gl_InstanceCustomIndexEXT.
 struct InstanceData {

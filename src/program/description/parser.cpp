@@ -219,6 +219,7 @@ class Parser {
     program_.samplesPerLaunch = reader.integer("samples_per_launch", 1, 1, 4096);
     program_.accumulation = static_cast<Accumulation>(reader.choice("accumulation", {"film", "program"}, 0));
     program_.keepsInstanceOrder = reader.boolean("keeps_instance_order", false);
+    program_.mergesInstances = reader.boolean("merges_instances", false);
     program_.anyHitForAll = reader.boolean("any_hit_for_all", false);
     program_.adaptive = reader.boolean("adaptive", false);
     parseCallableList(reader);

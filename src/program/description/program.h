@@ -124,6 +124,7 @@ struct Program {
   std::optional<std::uint32_t> declaredRecursion;
   Accumulation accumulation = Accumulation::film;
   bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (slower on lavapipe)
+  bool mergesInstances = false;        // hit shaders identify triangles only by triangleHit() of quintet/hit.glsl
   bool anyHitForAll = false;           // any-hit shaders also run for geometry without alpha, unless forced opaque
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
   bool adaptive = false;  // ray generation uses launchPixel() and launchActive(): sample counts can differ per pixel

@@ -31,15 +31,16 @@ std::vector<Defines> variants() {
                              {"QUINTET_NO_TORUS", "1"},
                              {"QUINTET_NO_PROCEDURAL_ALPHA", "1"},
                              {"QUINTET_NO_PROCEDURAL_PANES", "1"}};
-  for (const bool corruptsHitAttributes : {false, true})  // of lavapipe
+  for (const bool lavapipe : {false, true})
     for (const bool seeds : {false, true})
       for (const bool transmittance : {false, true})
         for (const bool recompute : {false, true}) {
-          if (recompute && !corruptsHitAttributes) continue;
+          if (recompute && !lavapipe) continue;
           Defines& defines = all.emplace_back(triangles);
           if (!seeds) defines.emplace_back("QUINTET_NO_SEEDS", "1");
           if (!transmittance) defines.emplace_back("QUINTET_NO_TRANSMITTANCE", "1");
-          if (corruptsHitAttributes) defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
+          if (lavapipe) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
+          if (lavapipe) defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
           if (recompute) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
         }
   return all;

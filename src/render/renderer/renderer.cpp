@@ -44,7 +44,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
   statistics_.pipelineSeconds = linked_.pipelineSeconds();
   const program::Program& description = runnable_.description;
   scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder,
-                   description.anyHitForAll);
+                   description.anyHitForAll, description.mergesInstances && !settings_.instrument);
   if (storesMotion()) scene.keepPreviousPositions();
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,

@@ -284,6 +284,25 @@ void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const r
   }
 }
 
+// Instances that do not move and only these use their meshes, so that nothing is built for several instances.
+void DeviceScene::findMergeCandidates(const scene::Scene& scene) {
+  if (!context_.info().quirks.keepsPrimitiveOrder || options_.keepInputOrder || options_.editable || animated_) return;
+  std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
+  for (const scene::Instance& instance : scene.instances) ++uses[static_cast<std::size_t>(instance.mesh)];
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Instance& instance = scene.instances[i];
+    const auto m = static_cast<std::size_t>(instance.mesh);
+    const scene::Mesh& mesh = scene.meshes[m];
+    const std::span<const program::GeometryFacts> facts =
+        std::span(facts_.geometries).subspan(geometry_.firstGeometry[m], mesh.geometries.size());
+    if (uses[m] > 1 || mesh.geometries.empty() || !mesh.primitiveSets.empty() || instance.mask != 0xFF ||
+        instance.flags != 0 || !std::ranges::all_of(facts, &program::GeometryFacts::opaque))
+      continue;
+    mergeCandidates_.push_back({static_cast<std::uint32_t>(i), geometry_.firstGeometry[m],
+                                static_cast<std::uint32_t>(mesh.geometries.size()), instance.worldFromObject});
+  }
+}
+
 void DeviceScene::uploadTables(const scene::Scene& scene) {
   geometryTable_ = gpu::makeBufferOf(context_, geometry_.geometries, 0, "geometries");
   frame_.geometries = geometryTable_.address();
@@ -293,15 +312,25 @@ void DeviceScene::uploadTables(const scene::Scene& scene) {
     references.push_back(
         {&blas_[static_cast<std::size_t>(blasOfMesh_[mesh])], geometry_.firstGeometry[mesh], firstLightSlots_[i]});
   }
-  topLevel_.emplace(context_, scene, references);
+  findMergeCandidates(scene);
+  topLevel_.emplace(context_, scene, references, mergeCandidates_.size() / 2);
   frame_.instances = topLevel_->table();
   frame_.previousInstances = topLevel_->previousTable();
   frame_.instanceCount = static_cast<std::uint32_t>(scene.instances.size());
 }
 
-void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
+void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll,
+                             bool mergeInstances) {
   const Stopwatch watch;
-  if (!topLevel_->prepareFor(rayTypeCount, keepInstanceOrder || options_.keepInputOrder, anyHitForAll)) return;
+  const bool keepOrder = keepInstanceOrder || options_.keepInputOrder;
+  const bool merge = mergeInstances && !keepOrder && !anyHitForAll && mergeCandidates_.size() >= 2;
+  if (merge && !merged_) {
+    merged_.emplace(context_, mergeCandidates_, geometry_.arrays, &statistics_.build);
+    topLevel_->setMerged(merged_->clusters());
+    bottomLevelBytes_ += merged_->bytes();
+  }
+  statistics_.mergedInstances = merge ? merged_->instanceCount() : 0;
+  if (!topLevel_->prepareFor(rayTypeCount, keepOrder, anyHitForAll, merge)) return;
   set_->setAccelerationStructure(topLevel_->structure().handle());
   statistics_.accelerationBytes = bottomLevelBytes_ + topLevel_->structure().size();
   statistics_.topLevelSeconds = watch.seconds();

@@ -20,6 +20,7 @@
 #include "render/scene/camera_media.h"
 #include "render/scene/deformed_meshes.h"
 #include "render/scene/geometry_upload.h"
+#include "render/scene/merged_instances.h"
 #include "render/scene/previous_positions.h"
 #include "render/scene/scene_features.h"
 #include "render/scene/texture_upload.h"
@@ -53,6 +54,7 @@ struct DeviceSceneStatistics {
   std::uint64_t accelerationBytes = 0;  // bottom and top level
   std::uint64_t primitiveMapBytes = 0;  // only if the driver keeps the input order (quirks.md)
   std::uint32_t lightCount = 0;
+  std::uint32_t mergedInstances = 0;  // that share acceleration structures; after prepareFor()
 };
 
 // Sums over all frames after the first one. Wall-clock time on the host, with the waits for the device.
@@ -91,8 +93,10 @@ class DeviceScene {
 
   // Builds the TLAS for programs with this number of ray types, which the hit record offsets depend on.
   // keepInstanceOrder makes gl_InstanceID the instance's index in the scene, at some cost in speed
-  // (docs/design/quirks.md).
-  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
+  // (docs/design/quirks.md). mergeInstances permits several instances in one acceleration structure, if the driver gains
+  // from it and the other two are false (render/scene/merged_instances.h).
+  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false,
+                  bool mergeInstances = false);
 
   // Moves the animated instances and lights to `frame`, and deforms meshes: updates vertices, BLASes, the instance
   // table, the TLAS, and the light tables if something that moves emits or an edit changed them. The addresses of moving
@@ -165,6 +169,7 @@ class DeviceScene {
   void buildBottomLevel(const scene::Scene& scene);
   void addDeformedMeshes(const scene::Scene& scene, std::span<const rt::BlasInput> inputs,
                          std::span<const std::size_t> meshOfInput);
+  void findMergeCandidates(const scene::Scene& scene);
   void uploadTables(const scene::Scene& scene);
 
   gpu::Context& context_;
@@ -192,6 +197,8 @@ class DeviceScene {
   std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
   std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
   std::uint64_t bottomLevelBytes_ = 0;
+  std::vector<MergeCandidate> mergeCandidates_;
+  std::optional<MergedInstances> merged_;  // built for the first program that permits it
   std::optional<TopLevel> topLevel_;
   std::shared_ptr<const scene::NodeAnimation> nodeAnimation_;  // null if no glTF animation plays
   std::optional<DeformedMeshes> deformed_;                     // if an animation deforms a mesh

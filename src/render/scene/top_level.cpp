@@ -2,6 +2,7 @@
 #include "render/scene/top_level.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "scene/animation/keyframes.h"
 
@@ -21,7 +22,8 @@ void storeTransform(shared::InstanceData& data, const mat4& worldFromObject) {
 
 }  // namespace
 
-TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references)
+TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references,
+                   std::size_t maxClusters)
     : context_(context) {
   const scene::Pose pose = scene::poseAt(scene.nodeAnimation.get(), 0.0);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -45,17 +47,41 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
     input.mask = instance.mask;
     input.flags = instance.flags;
   }
+  data_.resize(inputs_.size() + maxClusters);
   table_ = gpu::makeBufferOf(context, data_, 0, "instances");
   if (animated()) previousTable_ = gpu::makeBufferOf(context, data_, 0, "instances before");
 }
 
-bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll) {
-  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_ && anyHitForAll == anyHitForAll_) return false;
+bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll, bool merge) {
+  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_ && anyHitForAll == anyHitForAll_ &&
+      merge == merge_)
+    return false;
+  merge_ = merge;
   rayTypeCount_ = rayTypeCount;
   anyHitForAll_ = anyHitForAll;
   keepOrder_ = keepOrder;
   build();
   return true;
+}
+
+void TopLevel::setMerged(std::span<const MergedCluster> clusters) {
+  assert(mergedInputs_.empty() && inputs_.size() + clusters.size() <= data_.size());
+  inCluster_.assign(inputs_.size(), false);
+  for (const MergedCluster& cluster : clusters) {
+    for (const std::uint32_t instance : cluster.instances) inCluster_[instance] = true;
+    const std::uint32_t first = cluster.instances.front();
+    rt::InstanceInput input = inputs_[first];
+    input.blas = cluster.blas;
+    input.customIndex = static_cast<std::uint32_t>(inputs_.size() + mergedInputs_.size());
+    shared::InstanceData& data = data_[input.customIndex];
+    data = data_[first];
+    data.firstGeometry = static_cast<std::uint32_t>(cluster.indices);
+    data.firstLightSlot = static_cast<std::uint32_t>(cluster.indices >> 32);
+    data.flags |= shared::kInstanceMerged;
+    mergedGeometry_.push_back(data_[first].firstGeometry);
+    mergedInputs_.push_back(input);
+  }
+  table_.upload(std::as_bytes(std::span(data_)));
 }
 
 void TopLevel::setPose(const scene::Pose& pose, const scene::Pose& before) {
@@ -91,7 +117,13 @@ void TopLevel::build() {
   for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].recordOffset = data_[i].firstGeometry * rayTypeCount_;
   if (!tlas_) tlas_ = std::make_unique<rt::Tlas>(context_, static_cast<std::uint32_t>(inputs_.size()));
   tlas_->keepInputOrder(keepOrder_);
-  std::vector<rt::InstanceInput> inputs = inputs_;
+  std::vector<rt::InstanceInput> inputs;
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    if (!merge_ || inCluster_.empty() || !inCluster_[i]) inputs.push_back(inputs_[i]);
+  for (std::size_t k = 0; merge_ && k < mergedInputs_.size(); ++k) {
+    mergedInputs_[k].recordOffset = mergedGeometry_[k] * rayTypeCount_;
+    inputs.push_back(mergedInputs_[k]);
+  }
   for (rt::InstanceInput& input : inputs)
     if (anyHitForAll_ && (input.flags & scene::kInstanceForceOpaque) == 0) input.flags |= scene::kInstanceForceNoOpaque;
   tlas_->buildAndWait(inputs);

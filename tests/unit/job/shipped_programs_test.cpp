@@ -28,9 +28,9 @@ scene::Scene triangleScene(const scene::Material& material) {
 
 // The files of the path tracer that the compiler compiles for a scene, instead of using a module of the binary.
 std::vector<std::string> compiledFiles(const scene::Scene& scene, const std::vector<std::string>& outputs,
-                                       bool corrupts) {
+                                       bool lavapipe) {
   gpu::Quirks quirks;
-  quirks.corruptsHitAttributes = corrupts;
+  quirks.corruptsHitAttributes = quirks.keepsPrimitiveOrder = lavapipe;
   const render::Defines defines =
       render::renderDefines(render::shaderDefines(render::sceneFeatures(scene, {}), quirks), outputs);
   const program::Program pathtracer = program::loadProgram("<programs/pathtracer>");
@@ -51,9 +51,9 @@ TEST(ShippedPrograms, ServeScenesOfTriangles) {
   glass.transmission = 1.0f, glass.thickness = 0.1f, glass.clearcoat = 1.0f;
   leaf.alphaMode = scene::AlphaMode::blend, leaf.baseColor.a = 0.5f;
   pane.transmission = 1.0f, pane.roughness = 0.0f, pane.emissive = vec3(1.0f);
-  for (const bool corrupts : {false, true})
+  for (const bool lavapipe : {false, true})
     for (const scene::Material& material : {plain, glass, leaf, pane})
-      EXPECT_TRUE(compiledFiles(triangleScene(material), {}, corrupts).empty()) << corrupts;
+      EXPECT_TRUE(compiledFiles(triangleScene(material), {}, lavapipe).empty()) << lavapipe;
 }
 
 TEST(ShippedPrograms, OtherOutputsAreCompiled) {

@@ -89,6 +89,7 @@ TEST(ProgramToml, FillsInDefaults) {
   EXPECT_FALSE(p.declaredRecursion.has_value());
   EXPECT_EQ(p.accumulation, Accumulation::film);
   EXPECT_FALSE(p.keepsInstanceOrder);
+  EXPECT_FALSE(p.mergesInstances);
   EXPECT_EQ(p.samplesPerLaunch, 1u);
   EXPECT_EQ(outputNames(p), std::vector<std::string>{"color"});
   EXPECT_TRUE(p.hitGroups.empty());
@@ -290,9 +291,11 @@ name = "other"
 
 TEST(ProgramToml, ReadsAccumulationAndInstanceOrder) {
   const Program p =
-      parse(changed(kSmall, "description", "accumulation = \"program\"\nkeeps_instance_order = true\ndescription"));
+      parse(changed(kSmall, "description",
+                    "accumulation = \"program\"\nkeeps_instance_order = true\nmerges_instances = true\ndescription"));
   EXPECT_EQ(p.accumulation, Accumulation::program);
   EXPECT_TRUE(p.keepsInstanceOrder);
+  EXPECT_TRUE(p.mergesInstances);
   EXPECT_THAT(errorOf(changed(kSmall, "description", "accumulation = \"fim\"\ndescription")),
               isErrorAt(3, {"'accumulation'", "[program]", "'fim'", "'film'"}));
   EXPECT_THAT(errorOf(changed(kSmall, "description", "keeps_instance_order = 1\ndescription")),
