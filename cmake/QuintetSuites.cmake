@@ -33,8 +33,8 @@ set(QUINTET_LONG_SUITES api.ApiExplanation
   gpu.AnisotropyRender gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfReference gpu.BsdfSampling gpu.CameraInMedium
   gpu.Csg gpu.DiffuseTransmission gpu.DispersionRender gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
   gpu.IridescenceRender gpu.LampBehindABubble gpu.LampBehindPanes gpu.LampInABubble gpu.LightTreeDevice gpu.NestedMedia
-  gpu.OpenMedium gpu.PaneWeights gpu.PixelExplainer gpu.Scattering gpu.SessionEdits gpu.SessionExplains gpu.SheenRender
-  gpu.SolidAlpha gpu.SolidFarSide gpu.SolidGlass gpu.SolidLight gpu.Solids gpu.TriangleLight
+  gpu.OpenMedium gpu.PaneWeights gpu.PixelExplainer gpu.ProgramDraft gpu.Scattering gpu.SessionEdits gpu.SessionExplains
+  gpu.SheenRender gpu.SolidAlpha gpu.SolidFarSide gpu.SolidGlass gpu.SolidLight gpu.Solids gpu.TriangleLight
   unit.BuiltInPrograms unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.ForeignModules
   unit.GltfFuzz unit.LectureFuzz unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.Procedural
   unit.ProgramFuzz unit.UntilError)

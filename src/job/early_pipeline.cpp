@@ -21,15 +21,14 @@ bool traces(const program::CompiledProgram::Stage& stage) {
 // The check has found no error in built-in programs. Those of users must be checked first: a wrong pipeline can crash a driver.
 bool isTrusted(const program::Program& program) { return program.origin.starts_with("<programs/"); }
 
-// True if the depth of nested traces is 1 whatever the scene is.
+}  // namespace
+
 bool tracesOnlyFromRayGeneration(const program::Program& program, const program::CompiledProgram& compiled) {
   return !program.declaredRecursion &&
          std::ranges::none_of(compiled.stages, [](const program::CompiledProgram::Stage& stage) {
            return stage.kind != shader::Stage::rayGeneration && traces(stage);
          });
 }
-
-}  // namespace
 
 std::unique_ptr<EarlyPipeline> EarlyPipeline::make(gpu::Context& context, const program::Program& program,
                                                    const program::CompiledProgram& compiled,

@@ -11,6 +11,9 @@
 
 namespace quintet::job {
 
+// True if the depth of nested traces is 1 whatever the scene is, as far as the stages show.
+bool tracesOnlyFromRayGeneration(const program::Program& program, const program::CompiledProgram& compiled);
+
 class EarlyPipeline {
  public:
   // Returns null if the program is not built in, since the check must come first; if stages other than ray generation trace

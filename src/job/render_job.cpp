@@ -317,18 +317,8 @@ std::vector<TeamMember> RenderJob::makeMembers(program::RunnableProgram runnable
   return members;
 }
 
-void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
+render::RenderSettings RenderJob::rendererSettings() const {
   const RenderRequest& request = job_.request;
-  render::DeviceScene& scene = *scene_->onDevice;
-  deviceCount_ = std::min(deviceCount(observer), scene_->devices.size());
-  std::vector<std::filesystem::path> includedFiles = compiled.files;
-  const std::vector<Hash> includedHashes = compiled.fileHashes;
-  CheckedProgram checked = checkProgram(scene, std::move(compiled));
-  const render::Defines defines = render::renderDefines(scene.defines(), request.outputs);
-  std::vector<Diagnostic> warnings = std::move(checked.diagnostics);
-  std::erase_if(warnings, [](const Diagnostic& d) { return d.severity == Severity::note; });
-  if (!warnings.empty()) observer.diagnostics(warnings);
-
   render::RenderSettings settings;
   settings.width = scene_->size.x;
   settings.height = scene_->size.y;
@@ -346,6 +336,22 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   if (request.launchSeconds > 0) settings.launchSeconds = request.launchSeconds;
   settings.timeoutSeconds = request.launchTimeout;
+  return settings;
+}
+
+void RenderJob::link(program::CompiledProgram compiled, Observer& observer, PendingPipeline* draft) {
+  const RenderRequest& request = job_.request;
+  render::DeviceScene& scene = *scene_->onDevice;
+  deviceCount_ = std::min(deviceCount(observer), scene_->devices.size());
+  std::vector<std::filesystem::path> includedFiles = compiled.files;
+  const std::vector<Hash> includedHashes = compiled.fileHashes;
+  CheckedProgram checked = checkProgram(scene, std::move(compiled));
+  const render::Defines defines = render::renderDefines(scene.defines(), request.outputs);
+  std::vector<Diagnostic> warnings = std::move(checked.diagnostics);
+  std::erase_if(warnings, [](const Diagnostic& d) { return d.severity == Severity::note; });
+  if (!warnings.empty()) observer.diagnostics(warnings);
+
+  render::RenderSettings settings = rendererSettings();
   const bool callsPrint = program::prints(checked.runnable.compiled);
   if (!request.print && !printsNoted_ && callsPrint) {
     printsNoted_ = true;
@@ -360,7 +366,18 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
     prints = std::make_unique<PrintLog>(scene.context(), *request.print, printableRegion(settings), std::move(table));
     settings.log = &prints->log();
   }
-  team_ = std::make_unique<DeviceTeam>(makeMembers(std::move(checked.runnable), settings, observer));
+  program::RunnableProgram& runnable = checked.runnable;
+  std::unique_ptr<CompleteProgram> complete;
+  const bool isProbed = prints || runnable.countsHeat || runnable.countsRecursion;
+  if (draft && !isProbed && runnable.recursionDepth == 1 && draft->ready()) {
+    complete.reset(
+        new CompleteProgram{runnable,
+                            {scene.context(), scene.set(), runnable.description, runnable.compiled,
+                             engine_.pipelineCache(scene_->devices.front()), PendingPipeline::Launch::none}});
+    runnable.compiled.stages = draft->compiled().stages;
+  }
+  team_ = std::make_unique<DeviceTeam>(makeMembers(std::move(runnable), settings, observer));
+  complete_ = std::move(complete);
   prints_ = std::move(prints);
   callsPrint_ = callsPrint;
   includedFiles_ = std::move(includedFiles);
@@ -424,12 +441,23 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
     return;
   }
   observer.stage(kCompilingStage);
-  program::CompiledProgram compiled = program::compile(
-      changed.program, engine_.compiler(), render::renderDefines(scene_->onDevice->defines(), with.outputs));
+  std::unique_ptr<PendingPipeline> draft;
+  program::DraftListener onDraft;
+  if (with.draft && canDraft(changed))
+    onDraft = [&](program::CompiledProgram compiled) {
+      if (!tracesOnlyFromRayGeneration(changed.program, compiled)) return;
+      const render::DeviceScene& scene = *scene_->onDevice;
+      draft = std::make_unique<PendingPipeline>(scene.context(), scene.set(), changed.program, std::move(compiled),
+                                                engine_.pipelineCache(scene_->devices.front()),
+                                                PendingPipeline::Launch::empty);
+    };
+  program::CompiledProgram compiled = program::compile(changed.program, engine_.compiler(),
+                                                       render::renderDefines(scene_->onDevice->defines(), with.outputs),
+                                                       program::Instrumentation::none, onDraft);
   std::swap(job_, changed);
   try {
     team_->finish();
-    link(std::move(compiled), observer);
+    link(std::move(compiled), observer, draft.get());
   } catch (...) {
     std::swap(job_, changed);
     throw;
@@ -440,6 +468,24 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
   suspendedShutter_ = suspended;
   // Its any-hit shaders may need other acceleration structures.
   sceneOutdated_ = sceneOutdated_ || scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program);
+  restart();
+  provenanceOutdated_ = true;
+}
+
+// Drivers of GPUs take longer for a module with fewer optimizations, and probes replace the stages.
+bool RenderJob::canDraft(const ResolvedJob& job) const {
+  return deviceCount_ == 1 && scene_->onDevice->context().info().software && !job.request.print &&
+         !program::hasHeatMap(job.program, job.request.outputs);
+}
+
+void RenderJob::completeProgram(Observer& observer) {
+  if (!complete_ || !team_) return;
+  team_->finish();
+  complete_->pipeline.ready();
+  team_ = std::make_unique<DeviceTeam>(makeMembers(complete_->program, rendererSettings(), observer));
+  complete_.reset();
+  ++linkCount_;
+  frameOutdated_ = true;
   restart();
   provenanceOutdated_ = true;
 }

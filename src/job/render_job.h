@@ -19,6 +19,7 @@
 #include "job/engine.h"
 #include "job/observer.h"
 #include "job/print_log.h"
+#include "job/program_draft.h"
 #include "job/resolve.h"
 #include "job/result.h"
 #include "job/runnable_program.h"
@@ -61,6 +62,9 @@ struct ProgramRequest {
   std::vector<std::string> outputs;
   std::filesystem::path parameterFile;
   std::vector<std::string> assignments;
+  // RenderJob::setProgram() can return with a draft of a large program, which takes less time; see completeProgram(). On a CPU,
+  // with one device. The driver gets the draft before the check has ended: an incorrect program can crash it.
+  bool draft = false;
 };
 
 // With several devices in the engine, all of them render; a program that accumulates and a request for prints use the first one.
@@ -115,6 +119,12 @@ class RenderJob {
   // Compiles the program, which can be the same with changed shaders. Throws ProgramError, too, and then the old one
   // stays. A program that accumulates has no motion blur: RenderRequest::shutter is unset until another program follows.
   void setProgram(program::Program program, const ProgramRequest& with, Observer& observer);
+  // Images have the values of a draft, whose last bits can differ, until completeProgram() is called. Programs that are
+  // linked for other reasons are complete.
+  bool showsDraft() const { return complete_ != nullptr; }
+  // Replaces a draft by the complete program, and then discards the samples. Throws gpu errors and MemoryError; then the draft
+  // stays.
+  void completeProgram(Observer& observer);
   // Replaces RenderRequest::print. Its pixels need not be inside the image, whose size can change. Compiles the program.
   void setPrint(std::optional<PrintRequest> print, Observer& observer);
   void restart();  // only discards the samples
@@ -179,7 +189,10 @@ class RenderJob {
   double roundSeconds(const RenderLimits& limits, double elapsed) const;
   void changeScenes(const std::function<void(render::DeviceScene&)>& change);
   void changeRenderers(const std::function<void(render::Renderer&)>& change);
-  void link(program::CompiledProgram compiled, Observer& observer);
+  // `draft`: that the renderers use first, if the check finds that it can be used.
+  void link(program::CompiledProgram compiled, Observer& observer, PendingPipeline* draft = nullptr);
+  bool canDraft(const ResolvedJob& job) const;
+  render::RenderSettings rendererSettings() const;
   Provenance makeProvenance() const;
 
   scene::Scene& editedScene();  // a copy of the loaded scene, for edits
@@ -247,8 +260,9 @@ class RenderJob {
   bool printsNoted_ = false;          // Observer::printsDisabled() was called
   bool printsInAnySize_ = false;      // setPrint() was called: the pixels of the request can be outside of the image
   bool callsPrint_ = false;
-  std::unique_ptr<DeviceTeam> team_;  // null after a failed edit
-  mutable Provenance provenance_;     // without the facts that a result adds; see describeEdits()
+  std::unique_ptr<DeviceTeam> team_;           // null after a failed edit
+  std::unique_ptr<CompleteProgram> complete_;  // of the draft that team_ has; else null
+  mutable Provenance provenance_;              // without the facts that a result adds; see describeEdits()
   std::optional<Checkpoint> checkpoint_;
   StartPoint start_;                                   // of the next run()
   bool started_ = false;                               // run() was called

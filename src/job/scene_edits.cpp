@@ -288,6 +288,7 @@ void RenderJob::releaseDevice() {
   // The image keeps the size that was chosen for the first camera.
   if (scene_) job_.request.size = scene_->size;
   team_.reset();
+  complete_.reset();
   prints_.reset();
   scene_.reset();
   plainEnvironment_.reset();
@@ -315,6 +316,7 @@ void RenderJob::relink(Observer& observer) {
          observer);
   } catch (...) {  // the old program does not fit the scene
     team_.reset();
+    complete_.reset();
     sceneOutdated_ = true;
     throw;
   }

@@ -286,8 +286,11 @@ class Server::Implementation {
   void accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && site_->connections < kMaxConnections)
+      if (!error && site_->connections < kMaxConnections) {
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);  // an image does not wait for the confirmation of its header
         std::make_shared<Connection>(std::move(socket), *site_)->read();
+      }
       accept();
     });
   }

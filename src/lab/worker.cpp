@@ -428,6 +428,7 @@ class Worker : public job::Observer {
     request.render.limits.samples = command.samples.value_or(frames ? kEndlessFrames : settings_.defaults.samples);
     request.render.launchTimeout = settings_.defaults.timeout;
     request.render.seed = command.seed;
+    request.drafts = true;  // a crash of the driver ends only this process
     request.render.assignments = knownParameters(loaded, command);
     if (command.camera) request.render.camera = *command.camera;
     session_ = std::make_unique<interactive::Session>(

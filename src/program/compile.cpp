@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <mutex>
 #include <set>
 #include <string>
 
@@ -53,6 +54,52 @@ void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t
   for (spirv::CallSite& call : stage.calls) call.location.file = userFile(program, call.location.file);
 }
 
+shader::Stage stageOf(const std::string& file) {
+  return *shader::stageOfFile(isLibraryStage(file) ? file.substr(1, file.size() - 2) : file);
+}
+
+// The optional outputs that stages with these definitions write.
+std::vector<std::string> outputsOf(const Program& program,
+                                   const std::vector<std::pair<std::string, std::string>>& defines) {
+  std::vector<std::string> outputs;
+  for (const std::string& output : optionalOutputs(program))
+    if (std::ranges::find(defines, outputMacro(output), &std::pair<std::string, std::string>::first) != defines.end())
+      outputs.push_back(output);
+  return outputs;
+}
+
+// The stages of a program, complete or as drafts. Passes them on when all are known and at least one of them is a draft.
+class CollectedDrafts {
+ public:
+  CollectedDrafts(const std::vector<std::string>& files, std::vector<std::string> outputs,
+                  const DraftListener& listener)
+      : listener_(listener), incomplete_(files.size()) {
+    draft_.outputs = std::move(outputs);
+    draft_.ok = true;
+    for (const std::string& file : files) draft_.stages.push_back({file, stageOf(file), {}});
+  }
+
+  void add(std::size_t stage, std::vector<std::uint32_t> spirv) { set(stage, std::move(spirv), false); }
+  void complete(std::size_t stage, const std::vector<std::uint32_t>& spirv) { set(stage, spirv, true); }
+
+ private:
+  void set(std::size_t stage, std::vector<std::uint32_t> spirv, bool complete) {
+    const std::lock_guard lock(mutex_);
+    if (complete) --incomplete_;
+    draft_.stages[stage].spirv = std::move(spirv);
+    const auto isMissing = [](const CompiledProgram::Stage& known) { return known.spirv.empty(); };
+    if (passed_ || incomplete_ == 0 || std::ranges::any_of(draft_.stages, isMissing)) return;
+    passed_ = true;
+    listener_(draft_);
+  }
+
+  const DraftListener& listener_;
+  std::mutex mutex_;
+  CompiledProgram draft_;
+  std::size_t incomplete_;
+  bool passed_ = false;
+};
+
 }  // namespace
 
 std::vector<std::string> stageFiles(const Program& program) {
@@ -97,7 +144,7 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
                            Instrumentation instrumentation) {
   shader::Source source;
   const bool library = isLibraryStage(file);
-  source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
+  source.stage = stageOf(file);
   source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
                         : program.files.at(file);
   if (!isHitStage(file))
@@ -125,25 +172,29 @@ const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) co
 
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines,
-                        Instrumentation instrumentation) {
+                        Instrumentation instrumentation, const DraftListener& onDraft) {
   const Stopwatch clock;
   if (hasErrors(program.diagnostics)) return {.stages = {}, .diagnostics = program.diagnostics};
   const std::vector<std::string> files = stageFiles(program);
   std::vector<shader::Result> results(files.size());
   CompiledProgram compiled;
   compiled.stages.resize(files.size());
+  CollectedDrafts drafts(files, outputsOf(program, defines), onDraft);
   parallelFor(files.size(), [&](std::size_t i) {
     const shader::Source source = stageSource(program, files[i], i, defines, instrumentation);
-    results[i] = compiler.compile(source);
+    if (onDraft) {
+      results[i] = compiler.compile(source, [&](std::vector<std::uint32_t> spirv) { drafts.add(i, std::move(spirv)); });
+      drafts.complete(i, results[i].spirv);
+    } else {
+      results[i] = compiler.compile(source);
+    }
     if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
     if (instrumentation == Instrumentation::explain) logCalls(program, compiled.stages[i], i, source, compiler);
   });
   compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
   compiled.diagnostics = program.diagnostics;
-  for (const std::string& output : optionalOutputs(program))
-    if (std::ranges::find(defines, outputMacro(output), &std::pair<std::string, std::string>::first) != defines.end())
-      compiled.outputs.push_back(output);
+  compiled.outputs = outputsOf(program, defines);
   for (shader::Result& result : results) addResult(compiled, result);
   std::ranges::sort(compiled.fileHashes);
   compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()),

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,10 +58,15 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
                            const std::vector<std::pair<std::string, std::string>>& defines,
                            Instrumentation instrumentation);
 
-// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device).
+// Gets the program with drafts (shader::Compiler::DraftListener) of the stages that are not complete yet. Its diagnostics, files
+// and hashes are empty.
+using DraftListener = std::function<void(CompiledProgram draft)>;
+
+// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device). `onDraft` is called
+// at most once, on any thread, and only if all stages have a draft or are complete before the last one is complete.
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines,
-                        Instrumentation instrumentation = Instrumentation::none);
+                        Instrumentation instrumentation = Instrumentation::none, const DraftListener& onDraft = {});
 
 struct PayloadSize {
   std::string stage;    // file

@@ -189,18 +189,13 @@ VkStridedDeviceAddressRegionKHR ShaderBindingTable::region(const SbtRegion& regi
   return {buffer_.address() + region.offset, region.stride, region.size};
 }
 
-void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table,
-           std::span<const std::byte> constants, std::uint32_t width, std::uint32_t height, std::uint32_t depth) {
-  gpu::Context& context = commands.context();
-  const std::uint64_t limit = context.info().limits.maxLaunchInvocations;
-  const std::uint64_t plane = std::uint64_t{width} * height;
-  if (plane > limit || plane * depth > limit)
-    throw UsageError(fmt::format("a launch of {} x {} x {} rays is too large; the device supports {} rays", width,
-                                 height, depth, limit));
-  if (plane * depth == 0) return;
+namespace {
+
+void recordTrace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table,
+                 std::span<const std::byte> constants, std::uint32_t width, std::uint32_t height, std::uint32_t depth) {
   assert(constants.size() <= pipeline.set().pushConstantBytes());
 
-  const VolkDeviceTable& vk = context.vk();
+  const VolkDeviceTable& vk = commands.context().vk();
   const gpu::BindlessSet& set = pipeline.set();
   const VkDescriptorSet descriptors = set.set();
   vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pipeline.handle());
@@ -214,6 +209,25 @@ void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindin
                                         miss = table.region(layout.miss), hit = table.region(layout.hit),
                                         callable = table.region(layout.callable);
   vk.vkCmdTraceRaysKHR(commands.handle(), &rayGeneration, &miss, &hit, &callable, width, height, depth);
+}
+
+}  // namespace
+
+void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table,
+           std::span<const std::byte> constants, std::uint32_t width, std::uint32_t height, std::uint32_t depth) {
+  gpu::Context& context = commands.context();
+  const std::uint64_t limit = context.info().limits.maxLaunchInvocations;
+  const std::uint64_t plane = std::uint64_t{width} * height;
+  if (plane > limit || plane * depth > limit)
+    throw UsageError(fmt::format("a launch of {} x {} x {} rays is too large; the device supports {} rays", width,
+                                 height, depth, limit));
+  if (plane * depth == 0) return;
+  recordTrace(commands, pipeline, table, constants, width, height, depth);
+}
+
+void traceNothing(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table) {
+  const std::vector<std::byte> constants(pipeline.set().pushConstantBytes());
+  recordTrace(commands, pipeline, table, constants, 0, 0, 0);
 }
 
 namespace {

@@ -84,6 +84,9 @@ class ShaderBindingTable {
   SbtLayout layout_;
 };
 
+// Launches no invocations: a driver that compiles for the first launch of a pipeline does it then.
+void traceNothing(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table);
+
 // Binds pipeline and set, pushes `constants` and launches width × height × depth rays, without barriers. Throws
 // UsageError for more invocations than the device supports.
 void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table,

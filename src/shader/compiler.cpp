@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <deque>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -34,6 +35,7 @@ namespace {
 
 constexpr std::uint64_t kCacheFormat = 1;       // increase it when the options or the layout of an entry change
 constexpr std::size_t kMinCachedWords = 16384;  // of a module; spirv-opt takes 20 ms or less for smaller ones
+constexpr std::size_t kMinDraftWords = 65536;   // spirv-opt takes 0.2 s or less for smaller ones
 constexpr std::size_t kMaxTextBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxFiles = 4096;
 constexpr std::size_t kMaxIncludeDepth = 64;
@@ -302,6 +304,9 @@ struct Compiler::Impl {
   }
 
   std::vector<std::uint32_t> specialized(const Source& source, IncludeResolver& files) const;
+  Hash keyOfOptimized(const std::vector<std::uint32_t>& words) const;
+  std::vector<std::uint32_t> optimizeWithDraft(const std::vector<std::uint32_t>& words, const DraftListener& onDraft);
+  std::vector<std::uint32_t> optimizeAndStore(const std::vector<std::uint32_t>& words, const Hash& key);
 
   CompilerOptions options;
   SpirvCache cache;
@@ -331,12 +336,37 @@ std::vector<std::uint32_t> Compiler::Impl::specialized(const Source& source, Inc
   return words;
 }
 
+Hash Compiler::Impl::keyOfOptimized(const std::vector<std::uint32_t>& words) const {
+  Hasher hasher;
+  hasher.add("optimize").add(kOptimizerVersion).add(spvSoftwareVersionString()).add(options.debugInfo);
+  return hasher.add(std::as_bytes(std::span(words))).finish();
+}
+
+std::vector<std::uint32_t> Compiler::Impl::optimizeAndStore(const std::vector<std::uint32_t>& words, const Hash& key) {
+  std::vector<std::uint32_t> result = shader::optimize(words, options.debugInfo);
+  cache.store(key, {result, {}});
+  return result;
+}
+
+std::vector<std::uint32_t> Compiler::Impl::optimizeWithDraft(const std::vector<std::uint32_t>& words,
+                                                             const DraftListener& onDraft) {
+  const Hash key = keyOfOptimized(words);
+  if (auto entry = cache.load(key)) return std::move(entry->spirv);
+  std::future<std::vector<std::uint32_t>> complete =
+      std::async(std::launch::async, [&] { return optimizeAndStore(words, key); });
+  try {
+    onDraft(shader::draft(words));
+  } catch (const Error&) {  // the optimization fails for the same reason
+  }
+  return complete.get();
+}
+
 Compiler::Compiler(const CompilerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Compiler::~Compiler() = default;
 Compiler::Compiler(Compiler&&) noexcept = default;
 Compiler& Compiler::operator=(Compiler&&) noexcept = default;
 
-Result Compiler::compile(const Source& source) const {
+Result Compiler::compile(const Source& source, const DraftListener& onDraft) const {
   Result result;
   IncludeResolver files(source, impl_->options, embeddedShaderLibrary());
   if (auto problem = validate(source, files.root())) {
@@ -360,7 +390,8 @@ Result Compiler::compile(const Source& source) const {
     runOnDeepStack(stackBytesFor(inputs.textBytes), [&] { run = runGlslang(compiler, source, impl_->options, files); });
     if (impl_->options.optimize && source.optimize && !run.spirv.empty()) {
       try {
-        run.spirv = optimize(run.spirv);
+        const bool drafts = onDraft && run.spirv.size() >= kMinDraftWords;
+        run.spirv = drafts ? impl_->optimizeWithDraft(run.spirv, onDraft) : optimize(run.spirv);
       } catch (const Error& e) {
         run.spirv.clear();
         run.diagnostics.push_back({Severity::error, files.root().name, 0, 0, "GLSL", e.what()});
@@ -400,15 +431,10 @@ ShippedModule Compiler::ship(const Source& source) const {
 }
 
 std::vector<std::uint32_t> Compiler::optimize(const std::vector<std::uint32_t>& words) const {
-  const bool debugInfo = impl_->options.debugInfo;
-  if (words.size() < kMinCachedWords) return shader::optimize(words, debugInfo);
-  Hasher hasher;
-  hasher.add("optimize").add(kOptimizerVersion).add(spvSoftwareVersionString()).add(debugInfo);
-  const Hash key = hasher.add(std::as_bytes(std::span(words))).finish();
+  if (words.size() < kMinCachedWords) return shader::optimize(words, impl_->options.debugInfo);
+  const Hash key = impl_->keyOfOptimized(words);
   if (auto entry = impl_->cache.load(key)) return std::move(entry->spirv);
-  std::vector<std::uint32_t> result = shader::optimize(words, debugInfo);
-  impl_->cache.store(key, {result, {}});
-  return result;
+  return impl_->optimizeAndStore(words, key);
 }
 
 }  // namespace quintet::shader

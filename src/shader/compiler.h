@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -34,8 +35,13 @@ class Compiler {
   Compiler(Compiler&&) noexcept;
   Compiler& operator=(Compiler&&) noexcept;
 
-  // Thread-safe. Never throws because of the source.
-  Result compile(const Source& source) const;
+  // Gets a module that is only reduced (shader::draft), while the complete one is still being made.
+  using DraftListener = std::function<void(std::vector<std::uint32_t> spirv)>;
+
+  // Thread-safe. Never throws because of the source. `onDraft` is called at most once, on the thread of the caller, and only
+  // if the optimization takes much longer than a draft: for large modules that are not in the cache. The optimization
+  // continues on a different thread meanwhile.
+  Result compile(const Source& source, const DraftListener& onDraft = {}) const;
 
   // The optimizations of `compile`, for modules that were changed after a compilation without them (Source::optimize).
   // Thread-safe; uses the cache. Throws Error if the module is invalid.

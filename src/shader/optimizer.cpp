@@ -247,6 +247,15 @@ std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>&
   }
 }
 
+std::vector<std::uint32_t> draft(const std::vector<std::uint32_t>& words) {
+  spvtools::OptimizerOptions options;
+  options.set_validator_options(validatorOptions());
+  return runPasses(words, options, [&](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+    registerReductions(optimizer);
+  });
+}
+
 std::vector<std::uint32_t> reduceUnvalidated(const std::vector<std::uint32_t>& words) {
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);

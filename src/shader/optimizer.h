@@ -31,6 +31,11 @@ std::vector<std::uint32_t> specialize(const std::vector<std::uint32_t>& words, c
 std::vector<std::uint32_t> optimizeSpecialized(const std::vector<std::uint32_t>& words,
                                                const std::optional<SpecializationValues>& values);
 
+// Validates `words`, reduces each function, and removes sources, lines and names: in a fifth of the time of `optimize`. What
+// the module computes can differ from the optimized one in the last bits. Throws Error if the module is invalid or a pass
+// fails.
+std::vector<std::uint32_t> draft(const std::vector<std::uint32_t>& words);
+
 // Only replaces variables by values and removes dead code, without validation.
 std::vector<std::uint32_t> reduceUnvalidated(const std::vector<std::uint32_t>& words);
 

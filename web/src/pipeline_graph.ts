@@ -45,7 +45,7 @@ function traceNotes(trace: Trace): string[] {
 export function hitObjectLegend(model: PipelineModel): string {
   return [
     ...(model.traces.some((trace) => trace.searches) ? ["Search: fills a hit object"] : []),
-    ...(model.traces.some((trace) => trace.executes) ? ["Execution: runs the closest-hit or miss shader of a hit object"] : []),
+    ...(model.traces.some((trace) => trace.executes) ? ["Execution: runs its shader"] : []),
   ].join(" · ");
 }
 

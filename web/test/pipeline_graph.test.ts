@@ -60,7 +60,7 @@ test("searches and executions of hit objects are named as such", () => {
   assert.deepEqual(traces.map((node) => node.title), ["Hit object search, line 30", "Hit object execution, line 52"]);
   const notes = traces.map((node) => node.rows.filter(([label]) => label === "").map(([, text]) => text));
   assert.deepEqual(notes, [["in a loop", "runs no closest-hit and no miss shader"], ["runs no intersection and no any-hit shader"]]);
-  assert.equal(hitObjectLegend(model), "Search: fills a hit object · Execution: runs the closest-hit or miss shader of a hit object");
+  assert.equal(hitObjectLegend(model), "Search: fills a hit object · Execution: runs its shader");
   model.traces[1] = shadowModel().traces[1]!;
   assert.equal(hitObjectLegend(model), "Search: fills a hit object");
 });

@@ -157,6 +157,7 @@ class Session::Recorder : public Observer {
 Session::Session(Engine& engine, SessionRequest request, Clock clock, Observer& host)
     : engine_(engine),
       clock_(std::move(clock)),
+      drafts_(request.drafts),
       recorder_(std::make_unique<Recorder>(host)),
       resolution_(request.updatesPerSecond > 0 ? request.updatesPerSecond : paceOf(engine).updatesPerSecond) {
   program::Program program = loadForSession(request.program);
@@ -520,7 +521,7 @@ void Session::show(const SessionState& next) {
 }
 
 void Session::showProgram(program::Program program, const SessionState& next) {
-  const ProgramRequest with{outputsFor(program, next.output), next.parameterFile, next.assignments};
+  const ProgramRequest with{outputsFor(program, next.output), next.parameterFile, next.assignments, drafts_};
   job_->setProgram(std::move(program), with, *recorder_);  // keeps the old one if it throws
   // The program that picks depends on the shown one, so it is prepared again. Destroying the future would wait.
   if (picking_.valid() && picking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) picking_ = {};
@@ -665,7 +666,10 @@ std::vector<Event> Session::refine(const std::function<bool()>& interrupted) {
 }
 
 std::vector<Event> Session::step(double seconds, const std::function<bool()>& interrupted) {
-  recorder_->interrupted = interrupted;
+  // An edit of the program does not wait for samples that it discards.
+  recorder_->interrupted = [this, interrupted] {
+    return (interrupted && interrupted()) || (!direct_ && watcher_.pending());
+  };
   const double end = clock_() + seconds;
   reloadIfSaved();
   const auto fail = [&](const Error& error) {
@@ -704,6 +708,7 @@ std::vector<Event> Session::step(double seconds, const std::function<bool()>& in
     recorder_->add(image);
   }
   imageChanged_ = false;
+  recorder_->interrupted = interrupted;
   return recorder_->take();
 }
 
@@ -744,6 +749,7 @@ bool Session::renderPreview(unsigned factor) {
 
 void Session::beginRefinement() {
   keepPreview();
+  job_->completeProgram(*recorder_);
   if (filmSize_ != state_.size) job_->setSize(state_.size);
   filmSize_ = state_.size;
   job_->restart();

@@ -78,6 +78,9 @@ struct SessionRequest {
   // on a CPU, 0.01 on a GPU).
   RenderRequest render;
   double updatesPerSecond = 0;  // while something moves; 0 means 12 on a CPU, else 90
+  // ProgramRequest::draft for programs that change: the first images of reduced resolution appear earlier, and their last bits
+  // can differ.
+  bool drafts = false;
 };
 
 // `request` with the program, parameters, camera, environment, size and samples of a state. A session of it shows the
@@ -107,9 +110,9 @@ class Session {
   // Renders for about this time, at least one image if there is work, and returns what happened since the last step.
   // Returns at once if a command has only changed how the image is displayed.
   // Reloads the program if one of its files was saved. `interrupted` is asked between launches, which take about
-  // RenderRequest::launchSeconds: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
-  // TimeoutError. A lost device becomes DeviceReplaced, or Failed after kMaxDeviceLosses losses; the functions below
-  // throw DeviceLostError then.
+  // RenderRequest::launchSeconds: true abandons the batch in progress, whose samples are lost. A save of a file abandons it,
+  // too, except in refine(). Throws gpu errors and TimeoutError. A lost device becomes DeviceReplaced, or Failed after
+  // kMaxDeviceLosses losses; the functions below throw DeviceLostError then.
   std::vector<Event> step(double seconds, const std::function<bool()>& interrupted = {});
   // Refines to all samples, without images of reduced resolution. After Failed, it tries again.
   std::vector<Event> refine(const std::function<bool()>& interrupted = {});
@@ -125,7 +128,8 @@ class Session {
   // With the film, for output::writeOutputs(). Its size is reduced until refinement starts. Throws Error if the last
   // change failed.
   RenderResult result() const;
-  bool hasFullSize() const { return samples_ > 0 && filmSize_ == state_.size; }  // result() has samples at that size
+  // result() has samples at that size, of the complete program.
+  bool hasFullSize() const { return samples_ > 0 && filmSize_ == state_.size && !job_->showsDraft(); }
   render::RayCount rays() const;  // since the last restart; waits for the device, so not for each image
   // Call it with an error that one of the functions above, or a use of their result, has thrown: the next step() renders
   // the image again on a new device. Returns false if the session gave up after kMaxDeviceLosses losses.
@@ -203,6 +207,7 @@ class Session {
 
   Engine& engine_;
   const Clock clock_;
+  const bool drafts_;  // SessionRequest::drafts
   std::shared_ptr<const scene::Scene> scene_;
   std::vector<std::string> instanceNames_, materialNames_, lightNames_;
   Bounds3 sceneBounds_;                      // scene::animatedBounds

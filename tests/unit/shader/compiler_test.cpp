@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "shader/optimizer.h"
 #include "shader_test_support.h"
 
 namespace quintet::shader {
@@ -161,6 +162,26 @@ TEST(Compiler, OptimizesChangedModules) {
   std::vector<std::uint32_t> invalid = plain.spirv;
   invalid.pop_back();
   EXPECT_THROW(compiler.optimize(invalid), Error);
+}
+
+TEST(Compiler, DraftsLargeModulesThatItHasNotCompiledYet) {
+  std::string body;
+  for (int i = 0; i < 3000; ++i) body += "b.x = b.x * 3 + " + std::to_string(i) + ";\n";
+  const Compiler compiler({});
+  std::vector<std::vector<std::uint32_t>> drafts;
+  const auto onDraft = [&](std::vector<std::uint32_t> spirv) { drafts.push_back(std::move(spirv)); };
+  const Result complete = compiler.compile(computeSource("", body), onDraft);
+  ASSERT_TRUE(complete.ok());
+  ASSERT_EQ(drafts.size(), 1u);
+  EXPECT_EQ(validate(drafts[0]).text, "");
+  EXPECT_NE(drafts[0], complete.spirv);
+  EXPECT_EQ(compiler.compile(computeSource("", body), onDraft).spirv, complete.spirv);
+  compiler.compile(computeSource("", "b.x = 2;"), onDraft);
+  EXPECT_EQ(drafts.size(), 1u) << "of a cached module, and of a small one";
+  EXPECT_EQ(Compiler({}).compile(computeSource("", body)).spirv, complete.spirv) << "a draft changes the result";
+  std::vector<std::uint32_t> invalid = complete.spirv;
+  invalid.pop_back();
+  EXPECT_THROW(draft(invalid), Error);
 }
 
 TEST(Compiler, CompilesOnSeveralThreads) {
