@@ -349,8 +349,10 @@ void PipelineGraph::addMisses(const spirv::TraceFacts& trace, TraceTargets& adde
   const bool only = !groups.tablesKnown && misses.size() == 1 && sameMissRecord_;
   added.assumesMisses = !groups.tablesKnown && !misses.empty() && !only;
   for (std::size_t i = 0; i < misses.size(); ++i) {
-    const bool reached = !groups.tablesKnown || !miss.known ||
-                         std::ranges::any_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
+    const bool reached =
+        !groups.tablesKnown ||
+        (miss.known ? std::ranges::any_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; })
+                    : miss.mayBe(static_cast<std::uint32_t>(i)));
     if (reached)
       addEdge(added.edges, misses[i].file, {0, Role::miss, only || (groups.tablesKnown && miss.certain()), {}, i});
   }

@@ -127,6 +127,10 @@ bool hasEffect(Op op) {
 
 }  // namespace
 
+bool ArgumentValues::mayBe(std::uint32_t value) const {
+  return value >= min && (value & ones) == ones && (value & zeros) == 0;
+}
+
 bool ArgumentValues::mayHave(std::uint32_t bits) const {
   if (!known) return (~zeros & bits) != 0;
   return std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });

@@ -33,6 +33,7 @@ struct ArgumentValues {
   bool certain() const { return known && each; }  // not only an estimate
   // A value of at least `count` that certainly occurs; nullopt if there may be none.
   std::optional<std::uint32_t> atLeast(std::uint32_t count) const;
+  bool mayBe(std::uint32_t value) const;    // as far as the bound and the bits say
   bool mayHave(std::uint32_t bits) const;   // one of the bits can be set
   bool mustHave(std::uint32_t bits) const;  // all bits are set in each value
 

@@ -121,7 +121,8 @@ class TypeErrors {
     const bool receiver = receiverAgrees(pair), sender = senderAgrees(pair);
     // A pipeline can have groups that its table does not have, and a table can have records without a shader.
     const PipelineGroups& groups = graph_.groups;
-    if (groups.groupsKnown && !groups.tablesKnown) return !receiver && !sender;
+    // What sends to the shader, or receives from the trace, can be code that the constants of a variant exclude.
+    if ((groups.groupsKnown && !groups.tablesKnown) || graph_.hasVariants) return !receiver && !sender;
     if (groups.tablesKnown) return !receiver || (!hitMayEnd(pair) && !sender);
     // Any shader can be the one that is meant. It is the one that also fits to nothing, if there is one.
     if (!receiver && !sender) return true;
