@@ -321,7 +321,6 @@ void DeviceScene::uploadTables(const scene::Scene& scene) {
 
 void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll,
                              bool mergeInstances) {
-  const Stopwatch watch;
   const bool keepOrder = keepInstanceOrder || options_.keepInputOrder;
   const bool merge = mergeInstances && !keepOrder && !anyHitForAll && mergeCandidates_.size() >= 2;
   if (merge && !merged_) {
@@ -330,6 +329,7 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
     bottomLevelBytes_ += merged_->bytes();
   }
   statistics_.mergedInstances = merge ? merged_->instanceCount() : 0;
+  const Stopwatch watch;
   if (!topLevel_->prepareFor(rayTypeCount, keepOrder, anyHitForAll, merge)) return;
   set_->setAccelerationStructure(topLevel_->structure().handle());
   statistics_.accelerationBytes = bottomLevelBytes_ + topLevel_->structure().size();
