@@ -107,12 +107,18 @@ class ModuleContent {
  public:
   explicit ModuleContent(const std::vector<std::uint32_t>& words) {
     constexpr std::size_t kHeader = 5;
+    spv::Op last = spv::Op::OpNop, op = spv::Op::OpNop;
     for (std::size_t at = kHeader; at < words.size(); at += std::max(1u, words[at] >> 16)) {
       const auto operand = [&](std::size_t i) { return at + i < words.size() ? words[at + i] : 0; };
-      switch (static_cast<spv::Op>(words[at] & 0xFFFFu)) {
-        case spv::Op::OpFunction: ++functions_; break;
+      last = std::exchange(op, static_cast<spv::Op>(words[at] & 0xFFFFu));
+      switch (op) {
+        case spv::Op::OpFunction:
+          ++functions_;
+          returns_ = 0;
+          break;
         case spv::Op::OpReturn:
         case spv::Op::OpReturnValue: ++returns_; break;
+        case spv::Op::OpFunctionEnd: hasEarlyReturns_ = hasEarlyReturns_ || returns_ > 1 || !isReturn(last); break;
         case spv::Op::OpKill:
         case spv::Op::OpTerminateInvocation: kills_ = true; break;
         case spv::Op::OpCompositeInsert: inserts_ = true; break;
@@ -130,7 +136,7 @@ class ModuleContent {
   // False if the pass has nothing to work on. Building the module for a pass takes longer than most passes.
   bool canChange(std::string_view pass) const {
     if (pass == "wrap-opkill") return kills_;
-    if (pass == "merge-return") return returns_ > functions_;
+    if (pass == "merge-return") return hasEarlyReturns_;
     if (pass == "inline-entry-points-exhaustive" || pass == "eliminate-dead-functions") return functions_ > 1;
     if (pass == "private-to-local") return privates_;
     if (pass == "loop-unroll") return unrolls_;
@@ -146,7 +152,11 @@ class ModuleContent {
  private:
   static constexpr auto kUnroll = static_cast<std::uint32_t>(spv::LoopControlMask::Unroll);
 
-  std::size_t functions_ = 0, returns_ = 0;
+  static bool isReturn(spv::Op op) { return op == spv::Op::OpReturn || op == spv::Op::OpReturnValue; }
+
+  std::size_t functions_ = 0;
+  std::size_t returns_ = 0;       // of the function that is read
+  bool hasEarlyReturns_ = false;  // a function has more than the one at its end
   bool kills_ = false, inserts_ = false, phis_ = false, unrolls_ = false, locals_ = false, privates_ = false;
 };
 
