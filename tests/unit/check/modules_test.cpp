@@ -457,6 +457,45 @@ TEST(ModuleCheck, ReportsMembersThatAreUnsetForTheFirstRay) {
   EXPECT_THAT(pipeline("i == 0 ? gl_RayFlagsOpaqueEXT : gl_RayFlagsNoneEXT", "").check(), IsEmpty());
   replace(p.text("a.rmiss"), "{ p.color += p.throughput; }", "{ if (gl_RayTminEXT > 0.0) p.color += p.throughput; }");
   EXPECT_THAT(p.check(), IsEmpty());
+  // The code behind the trace sets it for the next ray.
+  RawPipeline later = pipeline("gl_RayFlagsNoneEXT", "");
+  replace(later.text("a.rgen"), "100.0, 0);\n", "100.0, 0);\n    p.throughput = vec4(0.5);\n");
+  EXPECT_THAT(later.check(), ElementsAre("Q107 a.rmiss:5"));
+  replace(later.text("a.rgen"), "    traceRayEXT", "    p.throughput = vec4(1);\n    traceRayEXT");
+  EXPECT_THAT(later.check(), IsEmpty());
+}
+
+// Reflections with a depth in the payload: the ray generation shader and the closest-hit shader must both set it.
+TEST(ModuleCheck, ReportsMembersThatOneOfTwoTracingStagesLeavesUnset) {
+  const std::string head =
+      "layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;\n"
+      "struct Payload { vec4 color; uint depth; };\n";
+  RawPipeline p = cleanPipeline();
+  p.groups.declaredRecursion = 4;
+  p.text("a.rgen") = head +
+                     "layout(set = 0, binding = 1, rgba8) uniform image2D result;\n"
+                     "layout(location = 0) rayPayloadEXT Payload p;\nvoid main() {\n  p.depth = 0u;\n"
+                     "  traceRayEXT(tlas, 0, 0xFF, 0, 1, 0, vec3(0), 0.001, vec3(0, 0, 1), 100.0, 0);\n"
+                     "  imageStore(result, ivec2(gl_LaunchIDEXT.xy), p.color);\n}\n";
+  p.text("a.rmiss") = head +
+                      "layout(location = 0) rayPayloadInEXT Payload p;\n"
+                      "void main() { p.color = vec4(0.5); }\n";
+  p.text("a.rchit") = head +
+                      "layout(location = 0) rayPayloadInEXT Payload p;\n"
+                      "layout(location = 1) rayPayloadEXT Payload inner;\nvoid main() {\n  p.color = vec4(0.1);\n"
+                      "  if (p.depth >= 3u) return;\n  inner.depth = p.depth + 1u;\n"
+                      "  traceRayEXT(tlas, 0, 0xFF, 0, 1, 0, vec3(1), 0.001, vec3(0, 1, 0), 100.0, 1);\n"
+                      "  p.color += inner.color;\n}\n";
+  EXPECT_THAT(p.check(), IsEmpty());
+  RawPipeline start = p;
+  replace(start.text("a.rgen"), "p.depth = 0u;", "");
+  EXPECT_THAT(start.check(), ElementsAre("Q107 a.rchit:9"));
+  EXPECT_THAT(start.diagnostics().front().text, HasSubstr("before the trace at a.rgen:9"));
+  replace(start.text("a.rgen"), "0xFF", "0x0F");  // these rays could hit other instances only
+  EXPECT_THAT(start.check(), IsEmpty());
+  replace(p.text("a.rchit"), "inner.depth = p.depth + 1u;", "");
+  EXPECT_THAT(p.check(), ElementsAre("Q107 a.rchit:9"));
+  EXPECT_THAT(p.diagnostics().front().text, HasSubstr("before the trace at a.rchit:11"));
 }
 
 TEST(ModuleCheck, ReportsGeometryOfADifferentKind) {
@@ -625,8 +664,66 @@ TEST(ModuleCheck, DoesNotAssumeTheGroupsOfStagesAlone) {
                       "void main() { if (b.x > 0.5) ignoreIntersectionEXT; visible *= 0.5; }\n",
                       Stage::anyHit});
   EXPECT_THAT(found(), IsEmpty());
+  replace(p.text("a.rgen"), "gl_RayFlagsNoneEXT, 0xFF, 1",
+          "gl_RayFlagsOpaqueEXT, 0xFF, 1");  // excludes the any-hit shader
+  EXPECT_THAT(found(), IsEmpty());
   replace(p.text("s.rahit"), "float visible", "vec3 visible");  // no trace sends it
   EXPECT_THAT(found(), Contains("Q101"));
+}
+
+// Without groups, a miss or callable shader can be unused if there are more than the indices of traces and calls name.
+TEST(ModuleCheck, AcceptsShadersThatNothingRunsWithoutGroups) {
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rgen"), "void main() {",
+          "layout(location = 0) callableDataEXT vec4 shade;\nvoid main() {\n  shade = vec4(1);\n"
+          "  executeCallableEXT(0u, 0);");
+  replace(p.text("a.rgen"), ", color);", ", color * shade);");
+  const auto add = [&](const std::string& name, const std::string& text, Stage kind) {
+    p.stages.push_back({name, text, kind});
+  };
+  add("c.rcall", "layout(location = 0) callableDataInEXT vec4 shade;\nvoid main() { shade *= 0.5; }\n",
+      Stage::callable);
+  add("d.rcall", "layout(location = 0) callableDataInEXT float other;\nvoid main() { other = 1.0; }\n",
+      Stage::callable);
+  add("s.rmiss", "layout(location = 0) rayPayloadInEXT float other;\nvoid main() { other = 1.0; }\n", Stage::miss);
+  const auto found = [&] {
+    const std::vector<ModuleStage> modules = p.modules();
+    std::vector<std::string> texts;
+    for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
+      texts.push_back(d.id + " " + d.text);
+    return texts;
+  };
+  EXPECT_THAT(found(), IsEmpty());
+  replace(p.text("a.rgen"), "executeCallableEXT(0u, 0)", "executeCallableEXT(gl_LaunchIDEXT.x & 1u, 0)");
+  EXPECT_THAT(found(), ElementsAre(AllOf(HasSubstr("Q301"), HasSubstr("d.rcall"))));
+  replace(p.text("a.rgen"), "executeCallableEXT(gl_LaunchIDEXT.x & 1u, 0)", "executeCallableEXT(0u, 0)");
+  replace(p.text("c.rcall"), "vec4 shade", "vec3 shade");  // now the call fits to neither
+  EXPECT_THAT(found(), Contains(AllOf(HasSubstr("Q301"), HasSubstr("c.rcall"))));
+}
+
+// In a loop, the call itself comes before its next one. It sets only what its shaders write.
+TEST(ModuleCheck, ReportsCallableDataThatALoopLeavesUnset) {
+  const std::string data = "struct Data { vec4 normal; vec4 color; };\n";
+  RawPipeline p = cleanPipeline();
+  replace(p.text("a.rgen"), "void main() {",
+          data +
+              "layout(location = 0) callableDataEXT Data d;\nvoid main() {\n  vec4 sum = vec4(0);\n"
+              "  for (uint i = 0u; i < gl_LaunchSizeEXT.z; ++i) {\n    d.normal = sum;\n"
+              "    executeCallableEXT(0u, 0);\n    sum += d.color;\n  }");
+  replace(p.text("a.rgen"), ", color);", ", color + sum);");
+  p.stages.push_back({"c.rcall",
+                      data + "layout(location = 0) callableDataInEXT Data d;\nvoid main() { d.color = d.normal; }\n",
+                      Stage::callable});
+  const auto found = [&] {
+    const std::vector<ModuleStage> modules = p.modules();
+    std::vector<std::string> texts;
+    for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
+      texts.push_back(d.id + " " + d.text);
+    return texts;
+  };
+  EXPECT_THAT(found(), IsEmpty());
+  replace(p.text("a.rgen"), "d.normal = sum;", "");
+  EXPECT_THAT(found(), ElementsAre(AllOf(HasSubstr("Q304"), HasSubstr("'d.normal'"), HasSubstr("not set before"))));
 }
 
 // A constant point is an origin only if a trace starts there.

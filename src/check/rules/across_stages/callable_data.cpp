@@ -84,6 +84,13 @@ class CallableDataRule {
     return found == targets_.end() ? nullptr : *found;
   }
 
+  bool anyTargetWrites(std::uint32_t leaf) const {
+    return std::ranges::any_of(targets_, [&](const Edge* edge) {
+      const spirv::SharedVariable* received = graph_.facts(*edge).incoming(StorageClass::IncomingCallableDataKHR);
+      return received && graph_.facts(*edge).writes(received->id, leaf);
+    });
+  }
+
   void findUnwritten(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
     const std::size_t call = site_->call->instruction;
     std::vector<std::size_t> reads = caller_->unguardedReads(call, data_->id, leaf);
@@ -108,8 +115,9 @@ class CallableDataRule {
   void findUnset(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
     const std::size_t call = site_->call->instruction;
     const spirv::Module& module = caller_->module();
+    // In a loop, the call itself comes before its next one. It sets only what its shaders write.
     for (const std::size_t writer : caller_->writers(data_->id, leaf))
-      if (spirv::canRunAfter(module, call, writer)) return;
+      if (spirv::canRunAfter(module, call, writer) && (writer != call || anyTargetWrites(leaf))) return;
     std::size_t read = 0;
     const Edge* target = firstTarget([&](const Edge* edge) {
       const spirv::StageFacts& facts = graph_.facts(*edge);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q107: a part of a payload is read before anything has set it: in the tracing stage before its first trace, or in a
-// shader that the trace runs, if no tracing stage sets it. In a loop, shaders of the trace can set it for its next ray, but not
-// for the first one.
+// shader that the trace runs, if no tracing stage sets it, or if it is certain that one of these stages does not. In a loop, shaders
+// of the trace, and the code behind it, can set it for its next ray, but not for the first one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -67,8 +67,10 @@ class InputRule {
       }
       // A condition could tell the first ray from the others.
       std::erase_if(reads, [&](std::size_t i) { return !runsAlways(facts, facts.accesses()[i].instruction); });
-      if (const TraceSite* unset = reads.empty() ? nullptr : unsetTrace(stage, leaf, Rays::first))
-        addTo(groups[unset], {"", "the first ray of ", ""}, leaf, reads.front());
+      if (reads.empty()) continue;
+      const TraceSite* unset = unsetTrace(stage, leaf, Rays::first);
+      if (!unset) unset = unsetByStage(stage, leaf);
+      if (unset) addTo(groups[unset], {"", isRepeated(*unset) ? "the first ray of " : "", ""}, leaf, reads.front());
     }
     for (const auto& [trace, leaves] : groups) {
       const SourceLocation origin = graph_.location(*trace);
@@ -92,6 +94,19 @@ class InputRule {
     return static_cast<std::size_t>(&stage - graph_.stages.data());
   }
 
+  // True if the trace is in a loop.
+  bool isRepeated(const TraceSite& site) const {
+    return spirv::canRunAfter(graph_.facts(site).module(), site.trace->instruction, site.trace->instruction);
+  }
+
+  // True if each path to the second instruction passes the first one.
+  static bool dominates(const spirv::StageFacts& facts, std::size_t first, std::size_t second) {
+    const auto from = facts.module().position(first), to = facts.module().position(second);
+    if (!from || !to || from->function != to->function) return false;
+    if (from->block == to->block) return first < second;
+    return facts.flow(from->function).dominates(from->block, to->block);
+  }
+
   // True if the instruction runs on each path through the stage.
   static bool runsAlways(const spirv::StageFacts& facts, std::size_t instruction) {
     const auto position = facts.module().position(instruction);
@@ -105,6 +120,27 @@ class InputRule {
     std::set<std::size_t> seen;
     std::vector<const TraceSite*> unset;
     return isSet(indexOf(stage), leaf, rays, seen, unset) || unset.empty() ? nullptr : unset.front();
+  }
+
+  // The first trace of a stage that declares the payload, if no trace of this stage sets the leaf that the other stage receives,
+  // and each certainly can run that one: what other stages set does not matter for these rays.
+  const TraceSite* unsetByStage(const PipelineStage& stage, std::uint32_t leaf) const {
+    const std::size_t receiver = indexOf(stage);
+    std::map<std::size_t, const TraceSite*> unset;  // by tracing stage; null if one of its traces is not certain
+    for (const TraceSite* site : receivers_.tracesTo(receiver)) {
+      const spirv::SharedVariable* sent = graph_.facts(*site).variable(site->trace->payload);
+      if (sent && sent->storage != StorageClass::RayPayloadKHR) continue;
+      const bool certain = runsForEachRay(*site, receiver) && hitsAllMasks(*site) && sends(*site, receiver) &&
+                           !setsBefore(*site, leaf, Rays::first) && !isReadUnwritten(*site, leaf);
+      const auto [known, isNew] = unset.try_emplace(site->stage, certain ? site : nullptr);
+      if (!isNew && !certain) known->second = nullptr;
+    }
+    const auto found = std::ranges::find_if(unset, [](const auto& entry) { return entry.second != nullptr; });
+    return found == unset.end() ? nullptr : found->second;
+  }
+
+  static bool hitsAllMasks(const TraceSite& site) {
+    return std::ranges::all_of(site.trace->mask.values, [](std::uint32_t mask) { return (mask & 0xFFu) == 0xFFu; });
   }
 
   // True if something can set the leaf of the payload that the stage receives. Adds the traces of stages that declare
@@ -168,8 +204,10 @@ class InputRule {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const spirv::Id sent = site.trace->payload;
     const bool own = tracer.variable(sent)->storage == StorageClass::RayPayloadKHR;
+    // A write after the trace in a loop is for the next ray.
     const auto writes = [&](const spirv::AccessFacts& a) {
-      return a.writes && a.variable == sent && a.leaves.covers(leaf);
+      return a.writes && a.variable == sent && a.leaves.covers(leaf) &&
+             (rays == Rays::any || !own || !dominates(tracer, site.trace->instruction, a.instruction));
     };
     if (std::ranges::any_of(tracer.accesses(), writes) && (own || !tracer.readsBeforeWriting(sent, leaf))) return true;
     for (const TraceSite& other : graph_.tracesOf(site.stage)) {

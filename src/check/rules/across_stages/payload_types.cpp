@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "check/rules/across_stages/payload_receivers.h"
@@ -41,6 +42,33 @@ bool missesNone(const PipelineGraph& graph, const TraceSite& site) {
          std::ranges::all_of(miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) >= graph.groups.misses.size(); });
 }
 bool missesNone(const PipelineGraph&, const CallSite&) { return false; }
+
+// True if there are more shaders than indices that the sites use, so that at least one of them is unused. The order of the
+// shaders is unknown.
+template <class Site, class Index>
+bool hasUnused(const std::vector<Site>& sites, std::size_t shaders, const Index& indexOf) {
+  std::set<std::uint32_t> used;
+  for (const Site& site : sites) {
+    const spirv::ArgumentValues& index = indexOf(site);
+    if (!index.known) return false;
+    used.insert(index.values.begin(), index.values.end());
+  }
+  return used.size() < shaders;
+}
+
+struct Unused {
+  bool miss = false, callable = false;  // a shader of this kind runs for no trace or call
+};
+
+Unused unusedOf(const PipelineGraph& graph) {
+  if (graph.groups.tablesKnown) return {};
+  return {hasUnused(
+              graph.traces, graph.groups.misses.size(),
+              [](const TraceSite& site) -> const auto& { return site.trace->miss; }),
+          hasUnused(
+              graph.calls, graph.groups.callables.size(),
+              [](const CallSite& site) -> const auto& { return site.call->index; })};
+}
 
 // All edges of the sites.
 struct AllEdges {
@@ -90,11 +118,38 @@ std::vector<Pair> pairsOf(const PipelineGraph& graph, const std::vector<Site>& s
   return pairs;
 }
 
+// Without groups: the shaders whose payload a trace sends, but which its flags exclude. The flags are then unusual, not the
+// payload. Numbers of PayloadReceivers::kindOfStage().
+std::set<std::size_t> excludedReceivers(const PipelineGraph& graph, const PayloadReceivers& receivers) {
+  std::set<std::size_t> result;
+  if (graph.groups.groupsKnown || graph.groups.tablesKnown) return result;
+  std::set<std::pair<std::size_t, const std::vector<bool>*>> seen;
+  for (const TraceSite& site : graph.traces) {
+    const bool excludes = site.trace->flags.mustHave(kFlagOpaque) || site.skipsClosestHit();
+    if (!excludes || !graph.facts(site).variable(site.trace->payload)) continue;
+    const std::vector<bool>& same = receivers.sameTypes(site);
+    if (!seen.insert({site.targets, &same}).second) continue;
+    for (const HitGroupRay hit : site.hits) {
+      for (const std::string& file : {graph.shaders(hit).anyHit, graph.shaders(hit).closestHit}) {
+        const PipelineStage* stage = graph.stage(file);
+        if (!stage || !stage->facts || !stage->facts->incoming(StorageClass::IncomingRayPayloadKHR)) continue;
+        const auto index = static_cast<std::size_t>(stage - graph.stages.data());
+        const std::span<const Edge> edges = edgesOf(site.edges, hit);
+        const bool runs = std::ranges::find(edges, index, &Edge::stage) != edges.end();
+        if (!runs && same[receivers.classOf(index)]) result.insert(receivers.kindOfStage(index));
+      }
+    }
+  }
+  return result;
+}
+
 // With dynamic arguments, a trace or call is assumed to reach more shaders than it does. A difference is then an error
 // only if one side differs in all of its pairs.
 class TypeErrors {
  public:
-  TypeErrors(const PipelineGraph& graph, const std::vector<Pair>& pairs) : graph_(graph) {
+  // `others`: receivers that agree with a site that does not run them.
+  TypeErrors(const PipelineGraph& graph, const std::vector<Pair>& pairs, std::set<std::size_t> others = {})
+      : graph_(graph), unused_(unusedOf(graph)), receivers_(std::move(others)) {
     for (const Pair& pair : pairs) {
       if (pair.difference && pair.edge->exact) receiversOfExact_.insert(pair.receiver);
       if (pair.alternative) silent_.insert(pair.site);
@@ -126,7 +181,7 @@ class TypeErrors {
     if (groups.tablesKnown) return !receiver || (!hitMayEnd(pair) && !sender);
     // Any shader can be the one that is meant. It is the one that also fits to nothing, if there is one.
     if (!receiver && !sender) return true;
-    if (!receiver) return !receiversOfBoth_.contains(pair.receiver);
+    if (!receiver) return !canBeUnused(pair) && !receiversOfBoth_.contains(pair.receiver);
     return !sender && !hitMayEnd(pair) && !sendersOfBoth_.contains(senderOf(pair));
   }
 
@@ -142,6 +197,11 @@ class TypeErrors {
   }
 
  private:
+  // A shader that fits to no site can be one that nothing runs.
+  bool canBeUnused(const Pair& pair) const {
+    return (pair.edge->role == Role::miss && unused_.miss) || (pair.edge->role == Role::callable && unused_.callable);
+  }
+
   using Sender = std::pair<std::size_t, bool>;  // the site, and whether its misses are meant
 
   // A hit can end without a closest-hit shader.
@@ -156,6 +216,7 @@ class TypeErrors {
   }
 
   const PipelineGraph& graph_;
+  const Unused unused_;
   std::set<std::size_t> receivers_, receiversOfExact_, receiversOfBoth_;  // Pair::receiver
   std::set<std::size_t> silent_;                                          // sites with an alternative
   std::set<std::size_t> reported_;                                        // stages
@@ -215,7 +276,7 @@ void checkCallPairs(const PipelineGraph& graph, Report& report) {
 void checkTracePairs(const PipelineGraph& graph, const PayloadReceivers& receivers, Report& report) {
   const std::vector<Pair> pairs =
       pairsOf(graph, graph.traces, StorageClass::IncomingRayPayloadKHR, KindsOfEdges{receivers});
-  TypeErrors errors(graph, pairs);
+  TypeErrors errors(graph, pairs, excludedReceivers(graph, receivers));
   for (auto first = pairs.begin(); first != pairs.end();) {
     const auto last = std::find_if(first, pairs.end(), [&](const Pair& pair) { return pair.site != first->site; });
     const TraceSite& site = graph.traces[first->site];
