@@ -17,8 +17,7 @@
 
 namespace quintet::layer {
 
-// Number of descriptors by set and binding.
-using DescriptorCounts = std::map<check::DescriptorSlot, std::uint32_t>;
+using check::DescriptorCounts;
 
 // VkBindDescriptorSetsInfo of VK_KHR_maintenance6, which the headers of Vulkan 1.3.239 do not have.
 struct BindDescriptorSetsInfo {

@@ -244,8 +244,7 @@ void TableCapture::traceIndirect(VkCommandBuffer commands, VkDeviceAddress addre
 }
 
 // The regions of an indirect trace, from the command that the device used.
-void TableCapture::readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
-                               std::array<check::TableRegion, check::kTableKinds>& regions) {
+void TableCapture::readCommand(const Copy& copy, const std::vector<std::byte>& bytes, Regions& regions) {
   VkTraceRaysIndirectCommand2KHR command{};
   std::memcpy(&command, bytes.data(), sizeof command);
   const auto region = [](VkDeviceAddress address, VkDeviceSize stride, VkDeviceSize size) {
@@ -441,7 +440,7 @@ void TableCapture::finishBuild(const Copy& copy, const std::vector<std::byte>& b
 }
 
 void TableCapture::finishTrace(const Copy& copy, const std::vector<std::byte>& bytes) {
-  std::array<check::TableRegion, check::kTableKinds> regions = copy.regions;
+  Regions regions = copy.regions;
   if (copy.isIndirect) readCommand(copy, bytes, regions);
   for (std::size_t i = 0; !copy.isIndirect && i < check::kTableKinds; ++i) {
     const auto [offset, count] = copy.data[i];

@@ -91,6 +91,7 @@ class TableCapture {
     VkBuffer source = VK_NULL_HANDLE;
     VkDeviceSize from = 0, bytes = 0;
   };
+  using Regions = std::array<check::TableRegion, check::kTableKinds>;
   struct Copy {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkBuffer buffer = VK_NULL_HANDLE;
@@ -100,7 +101,7 @@ class TableCapture {
     // Of a trace.
     std::shared_ptr<LinkedPipeline> pipeline;
     DescriptorCounts descriptors;
-    std::array<check::TableRegion, check::kTableKinds> regions;
+    Regions regions;
     std::array<std::pair<std::size_t, std::size_t>, check::kTableKinds> data;  // offset and bytes in `mapped`
     bool isIndirect = false;                                                   // the copy starts with the command
     std::vector<CopiedTable> tables;                                           // of an indirect trace
@@ -128,9 +129,7 @@ class TableCapture {
   void finishTrace(const Copy& copy, const std::vector<std::byte>& bytes);
   void finishBuild(const Copy& copy, const std::vector<std::byte>& bytes);
   const std::vector<check::TableGroup>& groupsOf(LinkedPipeline& pipeline);
-  static void readCommand(const Copy& copy, const std::vector<std::byte>& bytes,
-                          std::array<check::TableRegion, check::kTableKinds>& regions);
-  using Regions = std::array<check::TableRegion, check::kTableKinds>;
+  static void readCommand(const Copy& copy, const std::vector<std::byte>& bytes, Regions& regions);
   void link(const Copy& copy, const check::TableFindings& found, const Regions& regions);
   check::TableData dataOf(const check::TableFindings& found, const Regions& regions,
                           const std::optional<std::string>& rayGeneration) const;

@@ -40,6 +40,8 @@ struct TableData {
 
 // Set and binding of a variable of a shader.
 using DescriptorSlot = std::pair<std::uint32_t, std::uint32_t>;
+// Number of descriptors; bindings that are missing are unknown.
+using DescriptorCounts = std::map<DescriptorSlot, std::uint32_t>;
 
 struct PipelineGroups {
   std::string noun = "program";             // what messages call the whole: "program", "pipeline"
@@ -60,9 +62,8 @@ struct PipelineGroups {
   // With byRecord: what rays can hit. Without, a hit uses one of the hit groups that is unknown unless there is only one.
   std::optional<std::vector<InstanceRecords>> instances = {};
   std::vector<program::GeometryFacts> geometries = {};
-  TableData recordData = {};  // if tablesKnown
-  // Number of descriptors of the bindings of the pipeline layout, as far as they are known.
-  std::map<DescriptorSlot, std::uint32_t> descriptorCounts = {};
+  TableData recordData = {};               // if tablesKnown
+  DescriptorCounts descriptorCounts = {};  // of the pipeline layout
 
   std::string origin;                             // folder of the stages' files; empty if their names are paths
   std::string descriptionFile;                    // that declares the groups; lines of the groups refer to it

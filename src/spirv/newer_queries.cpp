@@ -86,7 +86,7 @@ class QueryRewriter {
         put(Op::OpCompositeConstruct, {type, result}, parts);
         break;
       }
-      case Result::truth:  // a comparison that is not a question whether there is a hit
+      case Result::truth:  // a comparison that does not say whether there is a hit
         if (float_ == 0) return false;
         put(query->known, {float_, first}, operands);
         put(Op::OpHitObjectGetRayTMinNV, {float_, first + 1}, operands);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions about a hit of extensions that SPIRV-Tools 2023.1 does not know (position fetch of ray queries, clusters, spheres, linear
-// swept spheres), as instructions that it knows. The analyses need their types and what they depend on, not their values.
+// Queries of extensions that SPIRV-Tools 2023.1 does not know (position fetch of ray queries, clusters, spheres, linear swept
+// spheres), as instructions that it knows. The analyses need their types and what they depend on, not their values.
 #ifndef QUINTET_SPIRV_NEWER_QUERIES_H
 #define QUINTET_SPIRV_NEWER_QUERIES_H
 
@@ -10,7 +10,7 @@
 
 namespace quintet::spirv {
 
-// Returns a copy in which such a question is another one about the same hit, with the same type. Hit objects must be those of the NV
+// Returns a copy in which such a query is replaced by a known one of the same hit and type. Hit objects must be those of the NV
 // extension (reorder_code.h). Words that cannot be read as instructions are copied.
 std::vector<std::uint32_t> withKnownQueries(std::span<const std::uint32_t> words);
 

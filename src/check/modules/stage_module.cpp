@@ -74,8 +74,7 @@ std::optional<ModuleSummary> summarize(const std::vector<std::uint32_t>& words, 
 ModuleStage stageModule(const std::string& name, const std::vector<std::uint32_t>& words,
                         const spirv::EntryPoint& entryPoint,
                         const std::optional<shader::SpecializationValues>& values) {
-  ModuleStage stage{name, stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration), {}, {}, false, false,
-                    false};
+  ModuleStage stage{.name = name, .kind = stageOf(entryPoint.stage).value_or(shader::Stage::rayGeneration)};
   constexpr int kMaxUnknown = 64;
   std::vector<std::uint32_t> plain =
       spirv::withPlainCode(spirv::withPlainLines(spirv::withEntryPoint(words, entryPoint)));

@@ -284,7 +284,7 @@ void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const r
   }
 }
 
-// Instances that do not move and only these use their meshes, so that nothing is built for several instances.
+// Static instances with opaque triangles whose mesh no other instance uses. An editable or animated scene has none.
 void DeviceScene::findMergeCandidates(const scene::Scene& scene) {
   if (!context_.info().quirks.keepsPrimitiveOrder || options_.keepInputOrder || options_.editable || animated_) return;
   std::vector<std::uint32_t> uses(scene.meshes.size(), 0);

@@ -457,7 +457,7 @@ TEST(ModuleCheck, ReportsMembersThatAreUnsetForTheFirstRay) {
   EXPECT_THAT(pipeline("i == 0 ? gl_RayFlagsOpaqueEXT : gl_RayFlagsNoneEXT", "").check(), IsEmpty());
   replace(p.text("a.rmiss"), "{ p.color += p.throughput; }", "{ if (gl_RayTminEXT > 0.0) p.color += p.throughput; }");
   EXPECT_THAT(p.check(), IsEmpty());
-  // The code behind the trace sets it for the next ray.
+  // The code after the trace sets it for the next ray.
   RawPipeline later = pipeline("gl_RayFlagsNoneEXT", "");
   replace(later.text("a.rgen"), "100.0, 0);\n", "100.0, 0);\n    p.throughput = vec4(0.5);\n");
   EXPECT_THAT(later.check(), ElementsAre("Q107 a.rmiss:5"));
@@ -671,6 +671,15 @@ TEST(ModuleCheck, DoesNotAssumeTheGroupsOfStagesAlone) {
   EXPECT_THAT(found(), Contains("Q101"));
 }
 
+// Ids and texts of the diagnostics if only the stages are known.
+std::vector<std::string> foundWithoutGroups(const RawPipeline& p) {
+  const std::vector<ModuleStage> modules = p.modules();
+  std::vector<std::string> texts;
+  for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
+    texts.push_back(d.id + " " + d.text);
+  return texts;
+}
+
 // Without groups, a miss or callable shader can be unused if there are more than the indices of traces and calls name.
 TEST(ModuleCheck, AcceptsShadersThatNothingRunsWithoutGroups) {
   RawPipeline p = cleanPipeline();
@@ -686,19 +695,12 @@ TEST(ModuleCheck, AcceptsShadersThatNothingRunsWithoutGroups) {
   add("d.rcall", "layout(location = 0) callableDataInEXT float other;\nvoid main() { other = 1.0; }\n",
       Stage::callable);
   add("s.rmiss", "layout(location = 0) rayPayloadInEXT float other;\nvoid main() { other = 1.0; }\n", Stage::miss);
-  const auto found = [&] {
-    const std::vector<ModuleStage> modules = p.modules();
-    std::vector<std::string> texts;
-    for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
-      texts.push_back(d.id + " " + d.text);
-    return texts;
-  };
-  EXPECT_THAT(found(), IsEmpty());
+  EXPECT_THAT(foundWithoutGroups(p), IsEmpty());
   replace(p.text("a.rgen"), "executeCallableEXT(0u, 0)", "executeCallableEXT(gl_LaunchIDEXT.x & 1u, 0)");
-  EXPECT_THAT(found(), ElementsAre(AllOf(HasSubstr("Q301"), HasSubstr("d.rcall"))));
+  EXPECT_THAT(foundWithoutGroups(p), ElementsAre(AllOf(HasSubstr("Q301"), HasSubstr("d.rcall"))));
   replace(p.text("a.rgen"), "executeCallableEXT(gl_LaunchIDEXT.x & 1u, 0)", "executeCallableEXT(0u, 0)");
-  replace(p.text("c.rcall"), "vec4 shade", "vec3 shade");  // now the call fits to neither
-  EXPECT_THAT(found(), Contains(AllOf(HasSubstr("Q301"), HasSubstr("c.rcall"))));
+  replace(p.text("c.rcall"), "vec4 shade", "vec3 shade");  // now the call matches neither
+  EXPECT_THAT(foundWithoutGroups(p), Contains(AllOf(HasSubstr("Q301"), HasSubstr("c.rcall"))));
 }
 
 // In a loop, the call itself comes before its next one. It sets only what its shaders write.
@@ -714,16 +716,10 @@ TEST(ModuleCheck, ReportsCallableDataThatALoopLeavesUnset) {
   p.stages.push_back({"c.rcall",
                       data + "layout(location = 0) callableDataInEXT Data d;\nvoid main() { d.color = d.normal; }\n",
                       Stage::callable});
-  const auto found = [&] {
-    const std::vector<ModuleStage> modules = p.modules();
-    std::vector<std::string> texts;
-    for (const Diagnostic& d : checkModules(groupsOfStages(modules), modules, {}).diagnostics)
-      texts.push_back(d.id + " " + d.text);
-    return texts;
-  };
-  EXPECT_THAT(found(), IsEmpty());
+  EXPECT_THAT(foundWithoutGroups(p), IsEmpty());
   replace(p.text("a.rgen"), "d.normal = sum;", "");
-  EXPECT_THAT(found(), ElementsAre(AllOf(HasSubstr("Q304"), HasSubstr("'d.normal'"), HasSubstr("not set before"))));
+  EXPECT_THAT(foundWithoutGroups(p),
+              ElementsAre(AllOf(HasSubstr("Q304"), HasSubstr("'d.normal'"), HasSubstr("not set before"))));
 }
 
 // A constant point is an origin only if a trace starts there.

@@ -23,7 +23,7 @@ struct Query {
 };
 void PrintTo(const Query& query, std::ostream* out) { *out << query.op; }
 
-// The result of the question is stored. The assembler does not know the instruction: a matrix query stands for it.
+// The result of the query is stored. The assembler does not know the instruction: a matrix query stands for it.
 Words moduleWith(const Query& query) {
   const bool ofRayQuery = query.op < 5432 ? query.op != 5346 : query.op > 5437;
   const std::string text =

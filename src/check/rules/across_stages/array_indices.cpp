@@ -202,7 +202,7 @@ class IndexRule {
 
   const spirv::Module& module_;
   const spirv::ValueRanges& ranges_;
-  const std::map<DescriptorSlot, std::uint32_t>& counts_;
+  const DescriptorCounts& counts_;
   const program::SceneFacts* scene_;
   const bool isRaw_;
   Report& report_;

@@ -197,7 +197,7 @@ class TypeErrors {
   }
 
  private:
-  // A shader that fits to no site can be one that nothing runs.
+  // A shader that matches no site can be one that nothing runs.
   bool canBeUnused(const Pair& pair) const {
     return (pair.edge->role == Role::miss && unused_.miss) || (pair.edge->role == Role::callable && unused_.callable);
   }

@@ -184,7 +184,7 @@ class UnwrittenPaths {
     return !constant;
   }
 
-  // What a question about the hit object of the execution has as answer if the shader runs; nullopt for any other instruction.
+  // The result of a query of the hit object that is executed, if the shader runs; nullopt for any other instruction.
   std::optional<double> answer(const spirv::Instruction& query) const {
     const spirv::Module& module = tracer_.module();
     const spirv::Instruction& execution = module.instructions()[trace_];
