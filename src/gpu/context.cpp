@@ -114,7 +114,12 @@ bool ContextOptions::validationRequested() {
   return !value.empty() && value != "0";
 }
 
-Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>(options)) {
+  if (!adaptDriverEnvironment(info().quirks)) return;
+  impl_->submissions.shutDown();
+  impl_.reset();  // the driver starts its threads with the instance
+  impl_ = std::make_unique<Impl>(options);
+}
 
 Context::~Context() {
   // A hung device still uses its objects, and destroying it would wait forever, so the objects are leaked.
@@ -125,7 +130,10 @@ std::vector<DeviceInfo> Context::devices() {
   std::vector<DeviceInfo> result;
   try {
     const Instance instance(nullptr);
-    for (FoundDevice& device : findDevices(instance.handle())) result.push_back(std::move(device.info));
+    for (FoundDevice& device : findDevices(instance.handle())) {
+      adaptDriverEnvironment(device.info.quirks);  // for processes that this one starts
+      result.push_back(std::move(device.info));
+    }
   } catch (const NoDeviceError&) {
     result.clear();
   }

@@ -23,6 +23,8 @@ struct Quirks {
   bool changesNestedBuiltIns = false;  // built-ins that are read after a nested trace belong to the inner hit
   bool sharesAnyHit = false;       // hit groups that share an intersection stage use the first group's any-hit shader
   bool sharesLocalArrays = false;  // indexed arrays of an intersection shader and its any-hit shader overlap
+  bool waitsInBuilds = false;      // threads of a build wait actively for each other: no more threads than cores
+  unsigned launchParts = 0;        // the driver's threads each take a contiguous part of a launch: interleave its rows
   bool presentingRequiresGlx = false;  // crashes in queries of surfaces of X servers without the extension GLX
 };
 

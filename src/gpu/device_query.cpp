@@ -7,10 +7,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/parallel.h"
 #include "gpu/error.h"
+#include "gpu/instance.h"
 
 namespace quintet::gpu {
 namespace {
+
+// Newer versions of lavapipe build trees with the shaders of Mesa's GPU drivers (PLOC). 25.0.7 does not, and 26.1.6 does; between
+// them, both are assumed, because sorting in vain costs little.
+constexpr std::uint32_t kLastOwnBuilder = VK_MAKE_API_VERSION(0, 25, 0, 99);
+constexpr std::uint32_t kCommonBuilder = VK_MAKE_API_VERSION(0, 26, 1, 0);
 
 constexpr const char* kRequiredExtensions[] = {
     VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
@@ -110,16 +117,25 @@ std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
   return fmt::format("{} {}", driverName(driver), version);
 }
 
-Quirks quirksOf(VkDriverId driver) {
+Quirks lavapipeQuirks(std::uint32_t version) {
   Quirks quirks;
-  quirks.presentingRequiresGlx = driver == VK_DRIVER_ID_NVIDIA_PROPRIETARY;
-  if (driver != VK_DRIVER_ID_MESA_LLVMPIPE) return quirks;
-  quirks.keepsPrimitiveOrder = true;
+  quirks.keepsPrimitiveOrder = version < kCommonBuilder;
   quirks.corruptsHitAttributes = true;
   quirks.noCompaction = true;
   quirks.changesNestedBuiltIns = true;
   quirks.sharesAnyHit = true;
   quirks.sharesLocalArrays = true;
+  quirks.waitsInBuilds = version > kLastOwnBuilder;
+  // More threads than cores balance a launch, too.
+  const unsigned threads = lavapipeThreads();
+  quirks.launchParts = threads > 1 && threads <= hardwareThreads() ? threads : 0;
+  return quirks;
+}
+
+Quirks quirksOf(VkDriverId driver, std::uint32_t version) {
+  if (driver == VK_DRIVER_ID_MESA_LLVMPIPE) return lavapipeQuirks(version);
+  Quirks quirks;
+  quirks.presentingRequiresGlx = driver == VK_DRIVER_ID_NVIDIA_PROPRIETARY;
   return quirks;
 }
 
@@ -190,7 +206,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.subgroupSize = properties.vulkan11.subgroupSize;
   std::memcpy(info.pipelineCacheUuid.data(), core.pipelineCacheUUID, info.pipelineCacheUuid.size());
   info.software = properties.driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
-  info.quirks = quirksOf(properties.driver.driverID);
+  info.quirks = quirksOf(properties.driver.driverID, core.driverVersion);
   return info;
 }
 

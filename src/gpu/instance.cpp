@@ -19,6 +19,13 @@ namespace {
 constexpr unsigned kThreadsPerCore = 8;
 constexpr unsigned kMaxLavapipeThreads = 32;  // LP_MAX_THREADS of Mesa, which starts no more
 
+constexpr const char* kLavapipeThreads = "LP_NUM_THREADS";
+
+bool adaptsDrivers() {
+  const char* off = std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS");
+  return !off || std::string_view(off) == "0";
+}
+
 void setUnlessSet(const char* name, const std::string& value) { ::setenv(name, value.c_str(), /*overwrite=*/0); }
 
 // ---- Validation messages
@@ -72,22 +79,38 @@ bool hasLayer(const char* name) {
 
 }  // namespace
 
-unsigned lavapipeThreads(unsigned cores) {
+unsigned lavapipeThreads() {
+  const char* preset = std::getenv(kLavapipeThreads);
+  const long wanted = preset ? std::strtol(preset, nullptr, 0) : static_cast<long>(hardwareThreads());
+  return static_cast<unsigned>(std::clamp<long>(wanted, 0, kMaxLavapipeThreads));
+}
+
+unsigned balancingThreads(unsigned cores) {
   return std::min(kThreadsPerCore * std::max(cores, 1u), kMaxLavapipeThreads);
 }
 
 void prepareDriverEnvironment() {
   static std::once_flag once;
   std::call_once(once, [] {
-    const char* off = std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS");
-    if (off && std::string_view(off) != "0") return;
+    if (!adaptsDrivers()) return;
 #if defined(__x86_64__)
     // LLVM 15 miscompiles integer code for AVX-512. Mesa interprets "avx" as "no AVX-512".
     setUnlessSet("GALLIUM_OVERRIDE_CPU_CAPS", "avx");
 #endif
     // lavapipe splits a launch into one contiguous part per thread. More parts than cores balance the load.
-    setUnlessSet("LP_NUM_THREADS", std::to_string(lavapipeThreads(hardwareThreads())));
+    setUnlessSet(kLavapipeThreads, std::to_string(balancingThreads(hardwareThreads())));
   });
+}
+
+bool adaptDriverEnvironment(const Quirks& quirks) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const unsigned cores = hardwareThreads();
+  const char* current = std::getenv(kLavapipeThreads);
+  if (!quirks.waitsInBuilds || !adaptsDrivers() || !current || balancingThreads(cores) == cores ||
+      current != std::to_string(balancingThreads(cores)))
+    return false;
+  return ::setenv(kLavapipeThreads, std::to_string(cores).c_str(), /*overwrite=*/1) == 0;
 }
 
 bool isFalseAlarm(std::string_view messageId, std::string_view text) {

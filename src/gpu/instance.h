@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "gpu/device_info.h"
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {
@@ -22,8 +23,16 @@ namespace quintet::gpu {
 // not safe while other threads call getenv.
 void prepareDriverEnvironment();
 
-// Returns the number of threads that lavapipe should use on `cores` cores.
-unsigned lavapipeThreads(unsigned cores);
+// Number of threads that lavapipe starts in an instance that is created now: LP_NUM_THREADS, by default one per core.
+unsigned lavapipeThreads();
+
+// Returns the value of LP_NUM_THREADS that prepareDriverEnvironment sets: more than `cores`, to balance launches.
+unsigned balancingThreads(unsigned cores);
+
+// Replaces that value by the number of cores if builds on the device would take too long with more threads
+// (Quirks::waitsInBuilds). Returns true if it did; existing instances keep their threads. The version of a driver is known only once
+// there is an instance.
+bool adaptDriverEnvironment(const Quirks& quirks);
 
 // Returns whether a validation layer reports this message for correct use; the list is in instance.cpp.
 bool isFalseAlarm(std::string_view messageId, std::string_view text);

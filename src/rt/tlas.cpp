@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/plural.h"
 #include "rt/acceleration_structure.h"
+#include "rt/blas_builder.h"
 #include "rt/spatial_order.h"
 
 namespace quintet::rt {
@@ -21,25 +23,30 @@ void checkBits(const char* field, std::uint32_t value, std::uint32_t largest) {
   if (value > largest) throw UsageError(fmt::format("instance: {} is {}; the maximum is {}", field, value, largest));
 }
 
-// Returns an invisible instance that replaces an inactive one. Its transform and its BLAS are those of an active
-// instance, because some drivers fail on inactive instances in a build.
-VkAccelerationStructureInstanceKHR placeholder(const InstanceInput& active) {
-  InstanceInput hidden;
-  hidden.worldFromObject = active.worldFromObject;
-  hidden.blas = active.blas;
-  hidden.mask = 0;
-  return packInstance(hidden);
-}
-
-std::vector<VkAccelerationStructureInstanceKHR> packNumbered(std::span<const InstanceInput> instances) {
+// Inactive instances are replaced at the place of an active one, because some drivers fail on inactive instances, and on
+// those with mask 0, among others (docs/design/quirks.md).
+std::vector<VkAccelerationStructureInstanceKHR> packNumbered(std::span<const InstanceInput> instances,
+                                                             const Blas* hidden) {
   std::vector<VkAccelerationStructureInstanceKHR> packed;
   const auto anyActive = std::ranges::find_if(instances, isActive);
   for (const InstanceInput& instance : instances) {
     packed.push_back(packInstance(instance));  // also checks instances that are skipped
-    if (!isActive(instance) && anyActive != instances.end()) packed.back() = placeholder(*anyActive);
+    if (!isActive(instance) && anyActive != instances.end())
+      packed.back() = packInstance({.worldFromObject = anyActive->worldFromObject, .blas = hidden});
   }
   if (anyActive == instances.end()) packed.clear();
   return packed;
+}
+
+// A degenerate triangle.
+Blas buildHidden(gpu::Context& context) {
+  const vec3 point(0.0f);
+  const uvec3 triangle(0u);
+  GeometryInput geometry;
+  geometry.positions = {&point, 1};
+  geometry.triangles = {&triangle, 1};
+  const BlasInput input{.geometries = {geometry}, .options = {.name = "hidden"}};
+  return std::move(BlasBuilder(context).build({&input, 1})[0]);
 }
 
 BuildDescription describe(VkDeviceAddress instances, std::uint32_t count) {
@@ -58,7 +65,7 @@ BuildDescription describe(VkDeviceAddress instances, std::uint32_t count) {
 }  // namespace
 
 bool isActive(const InstanceInput& instance) {
-  if (!instance.blas || instance.blas->bounds().empty()) return false;
+  if (instance.mask == 0 || !instance.blas || instance.blas->bounds().empty()) return false;
   const mat4& m = instance.worldFromObject;
   for (glm::length_t column = 0; column < 4; ++column)
     if (!isFinite(vec3(m[column]))) return false;
@@ -84,8 +91,8 @@ VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance) {
 }
 
 std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances,
-                                                              InstanceOrder order) {
-  if (order == InstanceOrder::numbered) return packNumbered(instances);
+                                                              InstanceOrder order, const Blas* hidden) {
+  if (order == InstanceOrder::numbered) return packNumbered(instances, hidden);
   const bool spatial = order == InstanceOrder::spatial;
   std::vector<VkAccelerationStructureInstanceKHR> packed;
   std::vector<Bounds3> bounds;
@@ -120,6 +127,11 @@ Tlas::Tlas(gpu::Context& context, std::uint32_t capacity, const std::string& nam
 
 Tlas::~Tlas() { retireStructure(context_, handle_); }
 
+void Tlas::keepInputOrder(bool keep) {
+  keepInputOrder_ = keep;
+  if (keep && !hidden_) hidden_ = buildHidden(context_);
+}
+
 void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instances) {
   if (instances.size() > capacity_)
     throw UsageError(fmt::format("'{}' cannot hold {}; its capacity is {}", name_,
@@ -127,7 +139,8 @@ void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instanc
   const InstanceOrder order = keepInputOrder_                              ? InstanceOrder::numbered
                               : context_.info().quirks.keepsPrimitiveOrder ? InstanceOrder::spatial
                                                                            : InstanceOrder::given;
-  const std::vector<VkAccelerationStructureInstanceKHR> packed = packInstances(instances, order);
+  const std::vector<VkAccelerationStructureInstanceKHR> packed =
+      packInstances(instances, order, hidden_ ? &*hidden_ : nullptr);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(packed));
   // The buffer is freed after this submission, so any number of rebuilds can be pending.
   const gpu::Buffer buffer(context_,

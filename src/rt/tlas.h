@@ -4,6 +4,7 @@
 #define QUINTET_RT_TLAS_H
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,8 +24,8 @@ struct InstanceInput {
   VkGeometryInstanceFlagsKHR flags = 0;
 };
 
-// Returns false for an instance that is not part of the build: its transform is not finite or not invertible, or its
-// BLAS is empty.
+// Returns false for an instance that is not part of the build: its mask is 0, its transform is not finite or not
+// invertible, or its BLAS is empty.
 bool isActive(const InstanceInput& instance);
 
 // Throws UsageError if a field does not fit into its bits.
@@ -33,10 +34,11 @@ VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance);
 enum class InstanceOrder {
   spatial,  // active instances in spatial order
   given,    // active instances in the given order
-  numbered  // all instances, so that gl_InstanceID is the index; inactive ones have mask 0
+  numbered  // all instances, so that gl_InstanceID is the index; inactive ones have the BLAS `hidden`
 };
+// `hidden`: a BLAS that no ray hits, for InstanceOrder::numbered.
 std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances,
-                                                              InstanceOrder order);
+                                                              InstanceOrder order, const Blas* hidden = nullptr);
 
 // A TLAS for up to `capacity` instances. It can be rebuilt (not refitted) at any time, even while the device traces an
 // earlier build, because each rebuild uses its own instance buffer.
@@ -58,7 +60,7 @@ class Tlas {
   VkDeviceSize size() const { return storage_.size(); }
   // Makes gl_InstanceID the index in the span for the next builds, on every device, also with inactive instances.
   // Tracing is slower with drivers that keep the input order (docs/design/quirks.md).
-  void keepInputOrder(bool keep) { keepInputOrder_ = keep; }
+  void keepInputOrder(bool keep);
 
  private:
   gpu::Context& context_;
@@ -68,6 +70,7 @@ class Tlas {
   gpu::Buffer storage_;
   gpu::Buffer scratch_;
   bool keepInputOrder_ = false;
+  std::optional<Blas> hidden_;  // replaces inactive instances if they keep their numbers
 };
 
 }  // namespace quintet::rt

@@ -31,9 +31,11 @@ Driver testDriver() {
 }
 
 Verdict judge(const Driver& driver, const KnownQuirk* quirk, std::size_t wrong) {
-  const bool affected = quirk && quirk->driver == driver.id;
+  const bool affected = quirk && quirk->driver == driver.id && driver.version >= quirk->first &&
+                        (quirk->fixed == 0 || driver.version < quirk->fixed);
   if (wrong > 0) return affected ? Verdict::knownQuirk : Verdict::fail;
-  return affected && !quirk->sporadic && driver.version >= quirk->version ? Verdict::fixed : Verdict::pass;
+  if (!affected || quirk->sporadic || driver.version < quirk->version) return Verdict::pass;
+  return quirk->fixed != 0 && driver.version > quirk->version ? Verdict::pass : Verdict::fixed;
 }
 
 Checks::~Checks() {

@@ -7,6 +7,7 @@
 
 #include "bare.h"
 #include "checks.h"
+#include "child.h"
 #include "gpu/error.h"
 #include "harness.h"
 #include "probe.h"
@@ -128,14 +129,16 @@ TEST(Workarounds, KeepsPrimitivesNextToInactiveOnes) {
   checks.done();
 }
 
-// An instance without a BLAS is inactive and does not affect others.
-TEST(BareDriver, KeepsInstancesNextToInactiveOnes) {
+// An instance without a BLAS is inactive and does not affect others. No ray hits one whose mask is 0.
+enum class Hidden { withoutBlas, withoutMask };
+void traceNextToHidden(Hidden hidden) {
   const BareStructure blas({BareGeometry{.positions = rowOfTriangles(1), .primitiveCount = 1}});
   std::vector<VkAccelerationStructureInstanceKHR> instances;
   std::vector<ProbeRay> rays;
   for (std::uint32_t k = 0; k < kRow; ++k) {
-    instances.push_back(bareInstance(inactive(k) ? 0 : blas.address()));
+    instances.push_back(bareInstance(inactive(k) && hidden == Hidden::withoutBlas ? 0 : blas.address()));
     instances.back().transform.matrix[0][3] = 4.0f * static_cast<float>(k);
+    if (inactive(k) && hidden == Hidden::withoutMask) instances.back().mask = 0;
     rays.push_back({.origin = {4.0f * static_cast<float>(k), 0, 2}});
   }
   const BareStructure tlas(instances);
@@ -146,6 +149,21 @@ TEST(BareDriver, KeepsInstancesNextToInactiveOnes) {
     if (!inactive(k)) checks.equal(hits[k].instance, k, "instance {}", k);
   }
   checks.done();
+}
+
+TEST(BareDriver, DISABLED_KeepsInstancesNextToInactiveOnes) { traceNextToHidden(Hidden::withoutBlas); }
+TEST(BareDriver, DISABLED_KeepsInstancesNextToThoseWithoutMask) { traceNextToHidden(Hidden::withoutMask); }
+
+// Some drivers crash.
+TEST(BareDriver, KeepsInstancesNextToHiddenOnes) {
+  Checks checks;
+  for (const char* test : {"BareDriver.DISABLED_KeepsInstancesNextToInactiveOnes",
+                           "BareDriver.DISABLED_KeepsInstancesNextToThoseWithoutMask"}) {
+    const ChildEnd end = runInChild(test);
+    checks.quirkThat(end == ChildEnd::passed, "{}: the process {}", test,
+                     end == ChildEnd::crashed ? "crashed" : "failed");
+  }
+  checks.done(kHiddenInstancesCrash);
 }
 
 // ---- Order of primitives. All boxes are on one ray, and the any-hit shader ignores them, so each is a candidate. The

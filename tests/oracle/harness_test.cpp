@@ -30,6 +30,23 @@ TEST(Harness, EvaluatesQuirksByDriverAndVersion) {
   verdict(older, &quirk, 0, Verdict::pass);
   verdict(same, &quirk, 0, Verdict::fixed);
   verdict(newer, &quirk, 0, Verdict::fixed);
+  constexpr KnownQuirk fixed{
+      .id = "test", .text = "for this test", .version = version(25, 0, 7), .fixed = version(26, 0, 0)};
+  constexpr KnownQuirk recent{
+      .id = "test", .text = "for this test", .version = version(26, 0, 0), .first = version(25, 0, 7)};
+  const Driver between{quirk.driver, version(25, 3, 0)};
+  verdict(older, &fixed, 1, Verdict::knownQuirk);
+  verdict(same, &fixed, 1, Verdict::knownQuirk);
+  verdict(same, &fixed, 0, Verdict::fixed);
+  verdict(between, &fixed, 1, Verdict::knownQuirk);
+  verdict(between, &fixed, 0, Verdict::pass);
+  verdict(newer, &fixed, 1, Verdict::fail);
+  verdict(newer, &fixed, 0, Verdict::pass);
+  verdict(older, &recent, 1, Verdict::fail);
+  verdict(between, &recent, 1, Verdict::knownQuirk);
+  verdict(between, &recent, 0, Verdict::pass);
+  verdict(newer, &recent, 1, Verdict::knownQuirk);
+  verdict(newer, &recent, 0, Verdict::fixed);
   verdict(other, &quirk, 0, Verdict::pass);
   verdict(other, &quirk, 1, Verdict::fail);
   verdict(other, &sporadic, 1, Verdict::fail);

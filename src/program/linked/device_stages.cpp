@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program/linked/device_stages.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "spirv/copy_builtins.h"
+#include "spirv/interleave_rows.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
@@ -23,9 +27,14 @@ VkShaderStageFlagBits vulkanStage(shader::Stage stage) {
 DeviceStages::DeviceStages(const Program& program, const CompiledProgram& compiled, const gpu::Quirks& quirks)
     : compiled_(compiled) {
   own_.reserve(compiled.stages.size());  // stages_ points into its elements
+  const bool interleaves =
+      quirks.launchParts > 1 && std::ranges::all_of(compiled.stages, [](const CompiledProgram::Stage& stage) {
+        return spirv::canInterleaveRows(stage.spirv);
+      });
   for (const CompiledProgram::Stage& stage : compiled.stages) {
     std::vector<std::uint32_t>& spirv = own_.emplace_back(spirv::withoutDebugInfo(stage.spirv));
     if (quirks.changesNestedBuiltIns && stage.kind == shader::Stage::closestHit) spirv = spirv::copyBuiltIns(spirv);
+    if (interleaves) spirv = spirv::interleaveRows(std::move(spirv), quirks.launchParts);
     stages_.push_back({vulkanStage(stage.kind), spirv, program.path(stage.file)});
   }
 }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "program/linked/device_stages.h"
 #include "rt_test_support.h"
+#include "spirv/interleave_rows.h"
 
 namespace quintet::rt::test {
 namespace {
@@ -115,6 +116,63 @@ TEST(RtPipeline, ReusesPipelinesWithEqualOptions) {
   }
   const gpu::BindlessSet smaller(quintet::test::testContext(), 0, testSet().pushConstantBytes() / 2);
   EXPECT_NE(Pipeline(quintet::test::testContext(), smaller, shader.options, nullptr).handle(), first.handle());
+}
+
+// The row of the driver that becomes row y: the definition, step by step.
+std::uint32_t rowOfDriver(std::uint32_t y, std::uint32_t height, std::uint32_t parts) {
+  std::vector<std::uint32_t> rows;  // in the order of the driver
+  for (std::uint32_t part = 0; part < parts; ++part)
+    for (std::uint32_t i = 0; i < height / parts; ++i) rows.push_back(i * parts + part);
+  while (rows.size() < height) rows.push_back(static_cast<std::uint32_t>(rows.size()));
+  return static_cast<std::uint32_t>(std::ranges::find(rows, y) - rows.begin());
+}
+
+// Only the ray generation shader has other rows. The callable shader returns the place where the driver runs it.
+TEST(RtPipeline, InterleavesTheRowsOfALaunch) {
+  constexpr std::uint32_t kWidth = 5;
+  const auto callable = compileStage(shader::Stage::callable, R"(
+    layout(location = 0) callableDataInEXT uvec3 place;
+    void main() { place = gl_LaunchIDEXT; })");
+  // A component, the whole, and an index that only the launch knows; with and without the size of the launch.
+  for (const std::string row : {"gl_LaunchIDEXT.y", "(gl_LaunchIDEXT * uvec3(1, gl_LaunchSizeEXT.x / 5, 1)).y",
+                                "gl_LaunchIDEXT[1u + place.z]"}) {
+    const auto rayGeneration = compileStage(shader::Stage::rayGeneration, R"(
+      layout(location = 0) callableDataEXT uvec3 place;
+      void main() {
+        executeCallableEXT(0, 0);
+        const uint i = )" + row + R"( * 5u + gl_LaunchIDEXT.x;
+        launch.hits.at[i].primitive = place.x;
+        launch.hits.at[i].geometry = place.y;
+        launch.hits.at[i].custom += 1u;
+      })");
+    for (const std::uint32_t parts : {1u, 2u, 3u, 32u}) {
+      const auto interleaved = spirv::interleaveRows(rayGeneration, parts);
+      EXPECT_NE(interleaved, rayGeneration);
+      PipelineOptions options;
+      options.stages = {{VK_SHADER_STAGE_RAYGEN_BIT_KHR, interleaved, "rgen"},
+                        {VK_SHADER_STAGE_CALLABLE_BIT_KHR, callable, "rcall"}};
+      options.groups = {{.general = 0}, {.general = 1}};
+      const Pipeline pipeline(quintet::test::testContext(), testSet(), options, nullptr);
+      SbtContents contents;
+      contents.callable.push_back({1, {}});
+      const ShaderBindingTable table(quintet::test::testContext(), pipeline, contents, "places");
+      for (const std::uint32_t height : {1u, 4u, 13u, 64u}) {
+        const gpu::Buffer hits =
+            gpu::makeBufferOf(quintet::test::testContext(), std::vector<Hit>(kWidth * height), 0, "hits");
+        const std::uint64_t constants[] = {0, hits.address()};
+        quintet::test::testContext().submitAndWait([&](gpu::Commands& commands) {
+          trace(commands, pipeline, table, std::as_bytes(std::span(constants)), kWidth, height);
+        });
+        const auto result = hits.downloadAs<Hit>(kWidth * height);
+        for (std::uint32_t i = 0; i < kWidth * height; ++i) {
+          SCOPED_TRACE(row + ", " + std::to_string(parts) + " parts, height " + std::to_string(height));
+          ASSERT_EQ(result[i].custom, 1u) << "column " << i % kWidth << ", row " << i / kWidth;
+          ASSERT_EQ(result[i].primitive, i % kWidth);
+          ASSERT_EQ(result[i].geometry, rowOfDriver(i / kWidth, height, parts)) << "row " << i / kWidth;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -37,11 +37,11 @@ TEST(VulkanError, NamesUnknownResults) {
 }
 
 TEST(DriverEnvironment, StartsMoreLavapipeThreadsThanCores) {
-  EXPECT_EQ(lavapipeThreads(0), 8u);
-  EXPECT_EQ(lavapipeThreads(1), 8u);
-  EXPECT_EQ(lavapipeThreads(2), 16u);
-  EXPECT_EQ(lavapipeThreads(4), 32u);
-  EXPECT_EQ(lavapipeThreads(64), 32u);
+  EXPECT_EQ(balancingThreads(0), 8u);
+  EXPECT_EQ(balancingThreads(1), 8u);
+  EXPECT_EQ(balancingThreads(2), 16u);
+  EXPECT_EQ(balancingThreads(4), 32u);
+  EXPECT_EQ(balancingThreads(64), 32u);
 }
 
 TEST(ValidationSink, CountsOnlyMessagesOfValidationLayers) {
