@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/instance.h"
 
+#include <link.h>
+
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 
@@ -26,7 +29,39 @@ bool adaptsDrivers() {
   return !off || std::string_view(off) == "0";
 }
 
-void setUnlessSet(const char* name, const std::string& value) { ::setenv(name, value.c_str(), /*overwrite=*/0); }
+// Names of the variables that Quintet has set and the user has not, also for the processes that this one starts.
+constexpr const char* kOwnVariables = "QUINTET_DRIVER_VARIABLES";
+
+bool isOwn(const std::string& name) {
+  const char* own = std::getenv(kOwnVariables);
+  return own && (std::string(own) + " ").find(name + " ") != std::string::npos;
+}
+
+void setUnlessSet(const char* name, const std::string& value) {
+  if (std::getenv(name)) return;
+  ::setenv(name, value.c_str(), /*overwrite=*/1);
+  const char* own = std::getenv(kOwnVariables);
+  if (!isOwn(name)) ::setenv(kOwnVariables, own ? fmt::format("{} {}", own, name).c_str() : name, /*overwrite=*/1);
+}
+
+constexpr const char* kCpuCaps = "GALLIUM_OVERRIDE_CPU_CAPS";
+constexpr const char* kWithoutAvx512 = "avx";  // how Mesa names it
+constexpr int kCorrectLlvm = 19;               // the oldest version that is known to be correct for AVX-512
+
+// Permits AVX-512 if all loaded versions of LLVM are correct. Drivers are loaded when an instance is created, and lavapipe reads
+// the variable when it lists its devices.
+void allowAvx512() {
+  if (!std::getenv(kCpuCaps) || !isOwn(kCpuCaps)) return;
+  int oldest = 0;
+  const auto visit = [](dl_phdr_info* info, std::size_t, void* data) {
+    int& found = *static_cast<int*>(data);
+    const int version = info->dlpi_name ? llvmVersion(info->dlpi_name) : 0;
+    if (version > 0 && (found == 0 || version < found)) found = version;
+    return 0;
+  };
+  dl_iterate_phdr(visit, &oldest);
+  if (oldest >= kCorrectLlvm) ::unsetenv(kCpuCaps);
+}
 
 // ---- Validation messages
 
@@ -79,6 +114,15 @@ bool hasLayer(const char* name) {
 
 }  // namespace
 
+int llvmVersion(std::string_view path) {
+  const std::string_view name = path.substr(path.rfind('/') + 1);
+  const std::size_t digit = name.find_first_of("0123456789");
+  int version = 0;
+  if (name.starts_with("libLLVM") && digit != std::string_view::npos)
+    std::from_chars(name.data() + digit, name.data() + name.size(), version);
+  return version;
+}
+
 unsigned lavapipeThreads() {
   const char* preset = std::getenv(kLavapipeThreads);
   const long wanted = preset ? std::strtol(preset, nullptr, 0) : static_cast<long>(hardwareThreads());
@@ -95,7 +139,7 @@ void prepareDriverEnvironment() {
     if (!adaptsDrivers()) return;
 #if defined(__x86_64__)
     // LLVM 15 miscompiles integer code for AVX-512. Mesa interprets "avx" as "no AVX-512".
-    setUnlessSet("GALLIUM_OVERRIDE_CPU_CAPS", "avx");
+    setUnlessSet(kCpuCaps, kWithoutAvx512);
 #endif
     // lavapipe splits a launch into one contiguous part per thread. More parts than cores balance the load.
     setUnlessSet(kLavapipeThreads, std::to_string(balancingThreads(hardwareThreads())));
@@ -106,10 +150,7 @@ bool adaptDriverEnvironment(const Quirks& quirks) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const unsigned cores = hardwareThreads();
-  const char* current = std::getenv(kLavapipeThreads);
-  if (!quirks.waitsInBuilds || !adaptsDrivers() || !current || balancingThreads(cores) == cores ||
-      current != std::to_string(balancingThreads(cores)))
-    return false;
+  if (!quirks.waitsInBuilds || !isOwn(kLavapipeThreads) || lavapipeThreads() <= cores) return false;
   return ::setenv(kLavapipeThreads, std::to_string(cores).c_str(), /*overwrite=*/1) == 0;
 }
 
@@ -197,6 +238,7 @@ Instance::Instance(ValidationSink* sink, std::span<const std::string> extensions
   const VkResult result = vkCreateInstance(&info, nullptr, &handle_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader found no working driver");
   check(result, "create the Vulkan instance");
+  allowAvx512();
   loadInstanceFunctions(handle_);
   if (sink) addMessenger(*sink);
 }

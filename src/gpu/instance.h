@@ -26,10 +26,14 @@ void prepareDriverEnvironment();
 // Number of threads that lavapipe starts in an instance that is created now: LP_NUM_THREADS, by default one per core.
 unsigned lavapipeThreads();
 
+// Returns the version of LLVM that the file name of a library states, as in "libLLVM-15.so.1" or "libLLVM.so.19.1"; 0 for other
+// libraries.
+int llvmVersion(std::string_view path);
+
 // Returns the value of LP_NUM_THREADS that prepareDriverEnvironment sets: more than `cores`, to balance launches.
 unsigned balancingThreads(unsigned cores);
 
-// Replaces that value by the number of cores if builds on the device would take too long with more threads
+// Replaces that value by the number of cores if the user has not set it and builds on the device would take too long with more threads
 // (Quirks::waitsInBuilds). Returns true if it did; existing instances keep their threads. The version of a driver is known only once
 // there is an instance.
 bool adaptDriverEnvironment(const Quirks& quirks);
