@@ -23,6 +23,17 @@ float environmentRowHeight(EnvironmentData e, uint row) {
   return preciseSin(float(2u * fromPole + 1u) * halfStep) * preciseSin(halfStep);
 }
 
+// The table to sample. A program that combines light sampling with BSDF sampling at every surface, by MIS weights with
+// environmentPdf, can define QUINTET_BALANCED_ENVIRONMENT: only what is brighter than the mean is sampled, because BSDF sampling
+// finds the rest at least as well (Karlik et al. 2019, "MIS Compensation"). Light sampling alone would then miss light.
+Address environmentTable(EnvironmentData e) {
+#ifdef QUINTET_BALANCED_ENVIRONMENT
+  return e.balancedTable;
+#else
+  return e.table;
+#endif
+}
+
 float environmentCellAngle(EnvironmentData e, uint row) {
 #ifdef QUINTET_WRONG_ENVIRONMENT_PDF
   return 4.0 * kPi / float(e.width * e.height);  // a wrong pdf without sin θ, for tests
@@ -36,7 +47,7 @@ float environmentPdf(vec3 direction) {
   if (e.table == 0ul) return 0.0;
   const uvec2 size = uvec2(e.width, e.height);
   const uvec2 cell = min(uvec2(equirectFromDirection(e, direction) * vec2(size)), size - 1u);
-  return AliasArray(e.table).at[cell.y * e.width + cell.x].probability / environmentCellAngle(e, cell.y);
+  return AliasArray(environmentTable(e)).at[cell.y * e.width + cell.x].probability / environmentCellAngle(e, cell.y);
 }
 
 // Returns a direction and its density. u is a point of the map, so stratified u stays stratified where the table keeps its
@@ -48,7 +59,7 @@ vec3 environmentSample(vec2 u, uint bits, out float pdf) {
   uint column = splitIndex(u.x, more, e.width, fraction.x);
   uint row = splitIndex(u.y, hash(more), e.height, fraction.y);
   float probability;
-  const uint cell = resolveAlias(AliasArray(e.table), row * e.width + column, fractionFloat(bits), probability);
+  const uint cell = resolveAlias(AliasArray(environmentTable(e)), row * e.width + column, fractionFloat(bits), probability);
   row = cell / e.width;
   column = cell - row * e.width;
   pdf = probability / environmentCellAngle(e, row);

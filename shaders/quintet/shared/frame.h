@@ -144,7 +144,7 @@ struct Frame {
   uvec4 cameraMedia;
   CameraData previousCamera;  // of the previous frame of an animation
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 40 + 16 + 72);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 48 + 16 + 72);
 
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.

@@ -62,6 +62,7 @@ QT_SHARED_SIZE(LightNode, 32);
 // rotating d by -rotation about y. Radiance = scale · texel.
 struct EnvironmentData {
   Address table;  // AliasEntry[width · height]: texels by luminance · solid angle; 0 means black or no environment
+  Address balancedTable;  // the same size, by the luminance above its mean over the sphere (quintet/lights/environment.glsl)
   vec3 scale;     // multiplies the texture; the radiance itself when texture is kNoTexture
   uint texture;   // bindless index or kNoTexture
   uint width;     // texels of the table
@@ -69,7 +70,7 @@ struct EnvironmentData {
   float cosRotation;
   float sinRotation;
 };
-QT_SHARED_SIZE(EnvironmentData, 40);
+QT_SHARED_SIZE(EnvironmentData, 48);
 
 QT_SHARED_END
 

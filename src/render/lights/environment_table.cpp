@@ -11,6 +11,8 @@
 namespace quintet::render {
 namespace {
 
+constexpr double kLeastAboveMean = 0.01;  // of the integral; less is hardly more than rounding
+
 constexpr std::size_t kRowsPerTask = 16;
 
 void forRows(std::size_t count, const std::function<void(std::size_t)>& body) {
@@ -79,6 +81,27 @@ std::vector<float> coarsen(const std::vector<float>& cells, uvec2 from, uvec2 to
   return result;
 }
 
+// The solid angle of a cell: 2π/width · (cos θ_top - cos θ_bottom), as in quintet/lights/environment.glsl.
+double cellAngle(std::size_t row, const uvec2& size) {
+  const double halfStep = 0.5 * glm::pi<double>() / size.y;
+  const double middle = (2.0 * static_cast<double>(row) + 1.0) * halfStep;
+  return 4.0 * glm::pi<double>() / size.x * std::sin(middle) * std::sin(halfStep);
+}
+
+// `weights`: luminance times solid angle of each cell, with the sum `integral`.
+std::vector<shared::AliasEntry> balancedTable(std::vector<float> weights, const uvec2& size, double integral) {
+  const double mean = integral / (4.0 * glm::pi<double>());
+  double above = 0.0;
+  for (std::size_t y = 0; y < size.y; ++y) {
+    const auto part = static_cast<float>(mean * cellAngle(y, size));
+    for (float& w : std::span(&weights[y * size.x], size.x)) {
+      w = std::max(w - part, 0.0f);
+      above += w;
+    }
+  }
+  return above > kLeastAboveMean * integral ? buildAliasTable(weights) : std::vector<shared::AliasEntry>{};
+}
+
 }  // namespace
 
 EnvironmentTable buildEnvironmentTable(const scene::Environment& environment) {
@@ -96,11 +119,8 @@ EnvironmentTable buildEnvironmentTable(const scene::Environment& environment) {
     size = glm::min(full, uvec2(kMaxEnvironmentTableWidth, kMaxEnvironmentTableHeight));
     if (size != full) weights = coarsen(weights, full, size);
   }
-  const double halfStep = 0.5 * glm::pi<double>() / size.y;
   for (std::size_t y = 0; y < size.y; ++y) {
-    // The solid angle 2π/width · (cos θ_top - cos θ_bottom), as in quintet/lights/environment.glsl.
-    const double middle = (2.0 * static_cast<double>(y) + 1.0) * halfStep;
-    const double angle = 4.0 * glm::pi<double>() / size.x * std::sin(middle) * std::sin(halfStep);
+    const double angle = cellAngle(y, size);
     const std::span<float> row(&weights[y * size.x], size.x);
     double sum = 0.0;
     for (float& w : row) {
@@ -114,6 +134,7 @@ EnvironmentTable buildEnvironmentTable(const scene::Environment& environment) {
   if (!(environment.intensity > 0.0f) && environment.values.empty()) return {};
   table.entries = buildAliasTable(weights);
   if (table.entries.empty()) return {};
+  table.balanced = balancedTable(std::move(weights), size, table.unscaledIntegral);
   table.width = size.x;
   table.height = size.y;
   return table;

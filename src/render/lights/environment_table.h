@@ -18,6 +18,10 @@ struct EnvironmentTable {
   std::uint32_t width = 0;  // in cells; 0 means that the environment is always black
   std::uint32_t height = 0;
   std::vector<shared::AliasEntry> entries;  // in row-major order from the top
+  // The same cells, by the luminance above its mean over the sphere; 0 elsewhere. For programs that combine light sampling with
+  // BSDF sampling, which finds dim parts of the environment at least as well: Karlik et al. 2019, "MIS Compensation: Optimizing
+  // Sampling Techniques in Multiple Importance Sampling". Empty if hardly anything is above the mean: use `entries`.
+  std::vector<shared::AliasEntry> balanced;
   double integral = 0.0;  // ∫ luminance dω over the sphere, including the intensity; W/m² on a unit cross section
   double unscaledIntegral = 0.0;  // without the intensity
 };

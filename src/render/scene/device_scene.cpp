@@ -106,7 +106,11 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   uploadLightTable(table);
   if (environmentTable.width > 0 && !environment.image.empty()) {
     environmentImage_.entries = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
+    if (!environmentTable.balanced.empty())
+      environmentImage_.balanced =
+          gpu::makeBufferOf(context_, environmentTable.balanced, 0, "balanced environment table");
     environmentTable.entries = {};
+    environmentTable.balanced = {};
     environmentImage_.table = environmentTable;
   }
   showEnvironment(environment, environmentTable);
@@ -147,13 +151,15 @@ void DeviceScene::uploadLightTable(LightTable& table) {
 
 void DeviceScene::showEnvironment(const scene::Environment& environment, const EnvironmentTable& table) {
   shared::EnvironmentData& data = frame_.environment;
-  data.table = 0;
+  data.table = data.balancedTable = 0;
   data.width = table.width;
   data.height = table.height;
   if (table.width > 0) {
     if (environment.image.empty())
       constantEnvironment_ = gpu::makeBufferOf(context_, table.entries, 0, "environment table");
     data.table = environment.image.empty() ? constantEnvironment_.address() : environmentImage_.entries.address();
+    const bool balanced = !environment.image.empty() && environmentImage_.balanced;
+    data.balancedTable = balanced ? environmentImage_.balanced.address() : data.table;
   }
   data.texture = environment.image.empty() ? shared::kNoTexture : environmentImage_.texture;
   const vec3 unscaled = environment.image.empty() ? environment.constant : vec3(1.0f);

@@ -141,6 +141,7 @@ class DeviceScene {
     std::uint32_t texture = shared::kNoTexture;
     EnvironmentTable table;  // without entries
     gpu::Buffer entries;
+    gpu::Buffer balanced;  // none if the table has no balanced entries
   };
 
   // `consumed`: null, or the scene itself, to be freed.

@@ -130,10 +130,10 @@ TEST(EnvironmentLight, DensityEqualsTheTable) {
 }
 
 // Chi-square over quarters of cells (in u and cos θ), found again from the directions in double precision.
-TEST(EnvironmentLight, SamplesFollowTheDensity) {
-  const scene::Environment environment = nastyMap();
-  const LightScene scene(scene::Scene{}, environment);
+void expectSamplesOf(const std::vector<shared::AliasEntry>& entries, const scene::Environment& environment,
+                     const LightScene& scene, const Defines& defines) {
   const render::EnvironmentTable& table = scene.table.environment;
+  ASSERT_EQ(entries.size(), table.entries.size());
   const auto samples = runCompute<vec4>(R"(
     #include <quintet/lights/lights.glsl>
     #include <quintet/sampling/pcg.glsl>
@@ -145,7 +145,7 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
       return vec4(wi, pdf);
     }
   )",
-                                        kEnvironmentSamples, scene.options());
+                                        kEnvironmentSamples, scene.options(defines));
   std::vector<double> observed(table.entries.size() * 4, 0.0), expected(observed.size()), byAngle(observed.size());
   std::size_t mismatches = 0;
   for (const vec4& s : samples) {
@@ -157,11 +157,11 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
     const double y = (rowCosine(table, row) - wi.y) / (rowCosine(table, row) - rowCosine(table, row + 1));
     const std::size_t quarter = (p.x - static_cast<double>(column) < 0.5 ? 0 : 1) + (y < 0.5 ? 0 : 2);
     observed[(row * table.width + column) * 4 + quarter] += 1.0;
-    const double wanted = table.entries[row * table.width + column].probability / cellAngle(table, row);
+    const double wanted = entries[row * table.width + column].probability / cellAngle(table, row);
     mismatches += std::abs(s.w - wanted) > 1e-4 * wanted ? 1 : 0;
   }
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    expected[i] = static_cast<double>(kEnvironmentSamples) * table.entries[i / 4].probability / 4.0;
+    expected[i] = static_cast<double>(kEnvironmentSamples) * entries[i / 4].probability / 4.0;
     byAngle[i] = static_cast<double>(kEnvironmentSamples) * cellAngle(table, i / 4 / table.width) / (16.0 * kPiDouble);
   }
   EXPECT_LT(mismatches, 20u);  // rounding moves a few directions over the border of their cell
@@ -169,6 +169,18 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
   EXPECT_LT(chiSquareTest(observed, byAngle).pValue, 1e-9);
   // In cells of probability 0 only what rounding moves over their border.
   for (std::size_t i = 0; i < observed.size(); ++i) EXPECT_TRUE(expected[i] > 0.0 || observed[i] < 3.0) << i;
+}
+
+TEST(EnvironmentLight, SamplesFollowTheDensity) {
+  const scene::Environment environment = nastyMap();
+  const LightScene scene(scene::Scene{}, environment);
+  expectSamplesOf(scene.table.environment.entries, environment, scene, {});
+}
+
+TEST(EnvironmentLight, BalancedSamplesFollowTheirDensity) {
+  const scene::Environment environment = nastyMap();
+  const LightScene scene(scene::Scene{}, environment);
+  expectSamplesOf(scene.table.environment.balanced, environment, scene, {{"QUINTET_BALANCED_ENVIRONMENT", "1"}});
 }
 
 // A constant sky gives pi, as a constant and as a map.

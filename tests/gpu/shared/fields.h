@@ -117,7 +117,7 @@ GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, 
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
-GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
+GPU_FIELDS(EnvironmentData, table, balancedTable, scale, texture, width, height, cosRotation, sinRotation);
 GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, flags, customIndex);
 GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, boxes, primitives, nodes,
            trees, material, triangleCount, kind, padding);

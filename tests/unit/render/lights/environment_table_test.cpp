@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,39 @@ TEST(EnvironmentTable, IsUniformForAConstantMap) {
     for (std::size_t i = 0; i < table.entries.size(); ++i)
       ASSERT_NEAR(table.entries[i].probability / cellAngle(table, i / size.x), 1.0 / kFullSphere, 1e-6);
   }
+}
+
+TEST(EnvironmentTable, BalancedCellsHaveWhatIsAboveTheMean) {
+  scene::Environment environment = mapOf(16, 8, vec3(1.0f));
+  setTexel(environment, 5, 2, 40.0f);
+  setTexel(environment, 11, 6, 3.0f);
+  environment.intensity = 2.0f;
+  const EnvironmentTable table = buildEnvironmentTable(environment);
+  ASSERT_EQ(table.balanced.size(), table.entries.size());
+  const double mean = table.unscaledIntegral / kFullSphere;
+  std::vector<double> above;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    const double weight = table.entries[i].probability * table.unscaledIntegral;
+    above.push_back(std::max(weight - mean * cellAngle(table, i / table.width), 0.0));
+    sum += above.back();
+  }
+  std::size_t zeros = 0;
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    EXPECT_NEAR(table.balanced[i].probability, above[i] / sum, 1e-6) << i;
+    zeros += table.balanced[i].probability == 0.0f ? 1 : 0;
+  }
+  EXPECT_GT(zeros, above.size() / 2);
+  EXPECT_LT(zeros, above.size());
+}
+
+// All cells would have rounding errors for weights.
+TEST(EnvironmentTable, HasNoBalancedCellsForANearlyConstantMap) {
+  EXPECT_TRUE(buildEnvironmentTable(mapOf(31, 17, vec3(3.0f))).balanced.empty());
+  scene::Environment environment = mapOf(31, 17, vec3(3.0f));
+  setTexel(environment, 5, 9, 3.1f);
+  EXPECT_TRUE(buildEnvironmentTable(environment).balanced.empty());
+  EXPECT_TRUE(buildEnvironmentTable({}).balanced.empty());
 }
 
 TEST(EnvironmentTable, IsEmptyForBlack) {
