@@ -419,7 +419,7 @@ std::span<const ImageScene> imageScenes() {
       {"thin_walls", thinWalls, 32, 20, 4, 128, 256, true},
       {"lanterns", lanterns, 32, 20, 4, 256, 2048, true},
       {"window", window, 32, 20, 4, 256, 2048, true},
-      {"foliage", foliage, 32, 20, 4, 128, 512, true},
+      {"foliage", foliage, 32, 20, 4, 512, 2048, true},
   };
   return kScenes;
 }
