@@ -63,6 +63,11 @@ void allowAvx512() {
   if (oldest >= kCorrectLlvm) ::unsetenv(kCpuCaps);
 }
 
+void allowAvx512Once() {
+  static std::once_flag once;
+  std::call_once(once, allowAvx512);
+}
+
 // ---- Validation messages
 
 constexpr std::size_t kKeptMessages = 256;  // limits the memory that repeated messages take
@@ -238,7 +243,7 @@ Instance::Instance(ValidationSink* sink, std::span<const std::string> extensions
   const VkResult result = vkCreateInstance(&info, nullptr, &handle_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader found no working driver");
   check(result, "create the Vulkan instance");
-  allowAvx512();
+  allowAvx512Once();
   loadInstanceFunctions(handle_);
   if (sink) addMessenger(*sink);
 }

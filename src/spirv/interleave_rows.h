@@ -10,7 +10,7 @@
 
 namespace quintet::spirv {
 
-// True if interleaveRows can rewrite the module, or need not: it only loads LaunchId, as a whole or in components.
+// True if the module uses LaunchId only in loads of the whole or of a component, which interleaveRows can rewrite, or not at all.
 bool canInterleaveRows(std::span<const std::uint32_t> words);
 
 // Returns the module with a permuted LaunchId: of H rows, row y of the driver becomes row (y mod q) * parts + y / q with

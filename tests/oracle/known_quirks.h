@@ -24,8 +24,8 @@ struct KnownQuirk {
   VkDriverId driver = VK_DRIVER_ID_MESA_LLVMPIPE;
   std::uint32_t version = kMesa25;  // where the defect was observed
   std::uint32_t first = 0;          // versions before it do not have the defect; 0: unknown
-  // From this version on, the driver is correct; 0: no such version is known. The versions between `version` and this one may
-  // be either.
+  // From this version on, the driver is correct; 0: no such version is known. Versions between `version` and this one
+  // may or may not have the defect.
   std::uint32_t fixed = 0;
 };
 

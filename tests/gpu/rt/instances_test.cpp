@@ -63,8 +63,9 @@ TEST(RtInstances, SkipsInactiveInstances) {
                                              {.worldFromObject = mat4(0.0f), .blas = &blas},
                                              {.worldFromObject = glm::scale(mat4(1.0f), vec3(1, 0, 1)), .blas = &blas},
                                              {.worldFromObject = translation(0, -1), .blas = &empty},
+                                             {.worldFromObject = translation(0, -1), .blas = &blas, .mask = 0},
                                              {.worldFromObject = translation(0, -7), .blas = &blas, .customIndex = 9}};
-  Tlas tlas(quintet::test::testContext(), 5);
+  Tlas tlas(quintet::test::testContext(), 6);
   const SbtContents contents = contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})});
   for (const bool keepOrder : {false, true}) {
     tlas.keepInputOrder(keepOrder);
@@ -72,7 +73,7 @@ TEST(RtInstances, SkipsInactiveInstances) {
     const auto hits = traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}});
     EXPECT_FLOAT_EQ(hits[0].t, 7.0f);
     EXPECT_EQ(hits[0].custom, 9u);
-    tlas.buildAndWait(std::span(instances).first(4));
+    tlas.buildAndWait(std::span(instances).first(5));
     EXPECT_LT(traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}})[0].t, 0.0f);
   }
 }

@@ -4,10 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <spirv/unified1/spirv.hpp11>
-
-#include "shader/compiler.h"
 #include "spirv/interleave_rows.h"
+#include "spirv/launch_test_support.h"
 
 namespace quintet::program {
 namespace {
@@ -31,23 +29,9 @@ TEST(DeviceStages, KeepsTheCompiledStagesWithoutDefects) {
   EXPECT_EQ(stages.stages().size(), 4u);
 }
 
-std::vector<std::uint32_t> compileRayGeneration() {
-  shader::Source source;
-  source.stage = shader::Stage::rayGeneration;
-  source.name = "main.rgen";
-  source.text =
-      "#version 460\n#extension GL_EXT_ray_tracing : require\nlayout(binding = 0, r32ui) uniform uimage2D image;\n"
-      "void main() { uvec3 id = gl_LaunchIDEXT; imageStore(image, ivec2(id.xy), uvec4(1)); }\n";
-  shader::CompilerOptions options;
-  options.debugInfo = false;
-  const shader::Result result = shader::Compiler(options).compile(source);
-  EXPECT_TRUE(result.ok());
-  return result.spirv;
-}
-
 // If one stage had other rows than the rest, shaders would disagree on the pixel.
 TEST(DeviceStages, InterleavesTheRowsOfAllStagesOrOfNone) {
-  const std::vector<std::uint32_t> words = compileRayGeneration();
+  const std::vector<std::uint32_t> words = spirv::compileRayGeneration(spirv::kStoresAtItsPlace);
   CompiledProgram program;
   program.stages = {{"a.rgen", shader::Stage::rayGeneration, words}, {"b.rgen", shader::Stage::rayGeneration, words}};
   program.ok = true;
@@ -59,9 +43,7 @@ TEST(DeviceStages, InterleavesTheRowsOfAllStagesOrOfNone) {
   };
   for (std::size_t stage : {0u, 1u}) EXPECT_EQ(moduleOf(stage), spirv::interleaveRows(words, 2));
   EXPECT_NE(moduleOf(0), words);
-  for (std::size_t i = 5; i < words.size(); i += words[i] >> 16)  // a pointer that interleaveRows does not follow
-    if ((words[i] & 0xFFFFu) == static_cast<std::uint32_t>(spv::Op::OpLoad) && (words[i] >> 16) == 4)
-      program.stages[1].spirv[i] = 4u << 16 | static_cast<std::uint32_t>(spv::Op::OpCopyObject);
+  program.stages[1].spirv = spirv::withCopiedPointers(words);
   ASSERT_FALSE(spirv::canInterleaveRows(program.stages[1].spirv));
   EXPECT_EQ(moduleOf(0), words);
 }
