@@ -120,6 +120,7 @@ std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
 Quirks lavapipeQuirks(std::uint32_t version) {
   Quirks quirks;
   quirks.keepsPrimitiveOrder = version < kCommonBuilder;
+  quirks.slowInstances = true;
   quirks.corruptsHitAttributes = true;
   quirks.noCompaction = true;
   quirks.changesNestedBuiltIns = true;

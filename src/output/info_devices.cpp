@@ -54,6 +54,7 @@ Json toJson(const gpu::DeviceInfo& device) {
           {"software", device.software},
           {"quirks",
            {{"keepsPrimitiveOrder", device.quirks.keepsPrimitiveOrder},
+            {"slowInstances", device.quirks.slowInstances},
             {"corruptsHitAttributes", device.quirks.corruptsHitAttributes},
             {"noCompaction", device.quirks.noCompaction}}}};
 }

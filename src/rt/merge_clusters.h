@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides which meshes of one coordinate system should share one acceleration structure, for drivers that build a tree by
-// halving the index range (Quirks::keepsPrimitiveOrder). A ray enters the trees of all meshes whose boxes it crosses, so
-// meshes that fill the same space (leaves and stems) are faster as one tree. A few large triangles among many small ones
-// are slower, because all leaves of a tree of halves have the same depth.
+// Decides which meshes of one coordinate system should share one acceleration structure, for drivers that traverse in software
+// (Quirks::slowInstances). A ray enters the trees of all meshes whose boxes it crosses, so meshes that fill the same space
+// (leaves and stems) are faster as one tree. A few large triangles among many small ones are slower in a tree of halves,
+// because all leaves have the same depth there.
 #ifndef QUINTET_RT_MERGE_CLUSTERS_H
 #define QUINTET_RT_MERGE_CLUSTERS_H
 
@@ -11,13 +11,15 @@
 #include <vector>
 
 #include "base/math.h"
+#include "rt/tree_cost.h"
 
 namespace quintet::rt {
 
 // `meshes`: the bounds of the primitives of each mesh, finite; a mesh without any is never merged. To save time, the caller
 // can pass every k-th primitive, with the same k for all meshes. Returns disjoint clusters of two or more meshes, each with
 // ascending indices, whose expected cost of traversal as one tree is at least a tenth below that of separate trees.
-std::vector<std::vector<std::uint32_t>> mergeClusters(std::span<const std::vector<Bounds3>> meshes);
+std::vector<std::vector<std::uint32_t>> mergeClusters(std::span<const std::vector<Bounds3>> meshes,
+                                                      TreeBuilder builder);
 
 }  // namespace quintet::rt
 #endif

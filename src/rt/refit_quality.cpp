@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "rt/spatial_order.h"
+#include "rt/tree_cost.h"
 
 namespace quintet::rt {
 namespace {

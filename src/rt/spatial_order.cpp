@@ -137,18 +137,6 @@ void order(const Splitter& splitter, std::size_t count) {
   parallelFor(level.size(), [&](std::size_t k) { splitter.splitAll(level[k]); });
 }
 
-double sumOfAreas(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order, Bounds3& whole) {
-  if (order.size() == 1) {
-    whole = bounds[order[0]];
-    return whole.area();
-  }
-  const std::size_t left = (order.size() + 1) / 2;
-  Bounds3 other;
-  const double sum = sumOfAreas(bounds, order.first(left), whole) + sumOfAreas(bounds, order.subspan(left), other);
-  whole.extend(other);
-  return sum + whole.area();
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds) {
@@ -175,13 +163,6 @@ std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds, std::sp
     for (std::size_t k = begin; k < end; ++k) result[k] = items[k].index;
   });
   return result;
-}
-
-double halvingTreeCost(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order) {
-  if (order.empty()) return 0.0;
-  Bounds3 whole;
-  const double sum = sumOfAreas(bounds, order, whole);
-  return whole.area() > 0.0f ? sum / whole.area() : 0.0;
 }
 
 }  // namespace quintet::rt

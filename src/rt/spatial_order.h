@@ -23,9 +23,5 @@ std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds);
 // range of its group. The sum of the sizes is bounds.size().
 std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds, std::span<const std::size_t> groupSizes);
 
-// Returns the sum of the surface areas of all nodes of the halving tree over boxes[order[0]], …, divided by the area of
-// the root: the expected number of boxes that a ray through the root intersects (Goldsmith and Salmon, 1987).
-double halvingTreeCost(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order);
-
 }  // namespace quintet::rt
 #endif

@@ -292,7 +292,7 @@ void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const r
 
 // Static instances with opaque triangles whose mesh no other instance uses. An editable or animated scene has none.
 void DeviceScene::findMergeCandidates(const scene::Scene& scene) {
-  if (!context_.info().quirks.keepsPrimitiveOrder || options_.keepInputOrder || options_.editable || animated_) return;
+  if (!context_.info().quirks.slowInstances || options_.keepInputOrder || options_.editable || animated_) return;
   std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
   for (const scene::Instance& instance : scene.instances) ++uses[static_cast<std::size_t>(instance.mesh)];
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {

@@ -110,13 +110,15 @@ MergedInstances::MergedInstances(gpu::Context& context, std::span<const MergeCan
   for (const MergeCandidate& candidate : candidates)
     for (const GeometryArrays& geometry : geometriesOf(candidate, arrays)) total += geometry.triangles.size();
   if (total > kMaxTriangles) return;
+  const rt::TreeBuilder builder =
+      context.info().quirks.keepsPrimitiveOrder ? rt::TreeBuilder::halving : rt::TreeBuilder::surfaceArea;
   std::vector<MergedMesh> meshes;
   for (const std::vector<const MergeCandidate*>& group : byTransform(candidates)) {
     if (group.size() < 2) continue;
     std::vector<std::vector<Bounds3>> samples;
     for (const MergeCandidate* candidate : group)
       samples.push_back(sampleOf(geometriesOf(*candidate, arrays), std::max<std::size_t>(total / kSample, 1)));
-    for (const std::vector<std::uint32_t>& cluster : rt::mergeClusters(samples)) {
+    for (const std::vector<std::uint32_t>& cluster : rt::mergeClusters(samples, builder)) {
       std::vector<const MergeCandidate*> members;
       MergedCluster& merged = clusters_.emplace_back();
       for (const std::uint32_t k : cluster) {

@@ -135,7 +135,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
 
 Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
   Defines defines = features.defines;
-  if (quirks.keepsPrimitiveOrder) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
+  if (quirks.slowInstances) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
   if (!quirks.corruptsHitAttributes) return defines;
   defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
   if (features.alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");

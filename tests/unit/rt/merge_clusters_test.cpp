@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes share one tree on drivers that halve the index range.
+// Which meshes share one tree on drivers that traverse in software.
 #include "rt/merge_clusters.h"
 
 #include <gtest/gtest.h>
@@ -25,26 +25,8 @@ Boxes scattered(std::size_t count, std::uint32_t seed, const vec3& corner = vec3
   return boxes;
 }
 
-TEST(MergeClusters, JoinsMeshesThatFillTheSameSpace) {
-  const std::vector<Boxes> meshes{scattered(500, 1), scattered(2000, 2), scattered(1000, 3)};
-  EXPECT_EQ(mergeClusters(meshes), (Clusters{{0, 1, 2}}));
-}
-
-TEST(MergeClusters, KeepsMeshesApartThatDoNotOverlap) {
-  const std::vector<Boxes> meshes{scattered(500, 1), scattered(500, 2, {2, 0, 0}), scattered(500, 3, {0, 3, 0})};
-  EXPECT_EQ(mergeClusters(meshes), Clusters{});
-}
-
-TEST(MergeClusters, FormsAClusterPerPartOfTheSpace) {
-  const std::vector<Boxes> meshes{scattered(400, 1), scattered(400, 2, {5, 0, 0}), scattered(400, 3),
-                                  scattered(400, 4, {5, 0, 0})};
-  Clusters clusters = mergeClusters(meshes);
-  std::ranges::sort(clusters);
-  EXPECT_EQ(clusters, (Clusters{{0, 2}, {1, 3}}));
-}
-
-// Twelve triangles of a room would lie as deep in the tree as the small ones.
-TEST(MergeClusters, KeepsAFewLargeTrianglesApart) {
+// Twelve triangles on the faces of the unit cube.
+Boxes room() {
   Boxes room;
   for (const float side : {0.0f, 1.0f}) {
     for (int k = 0; k < 2; ++k) {
@@ -53,13 +35,44 @@ TEST(MergeClusters, KeepsAFewLargeTrianglesApart) {
       room.push_back({vec3(0, 0, side), vec3(1, 1, side)});
     }
   }
-  EXPECT_EQ(mergeClusters(std::vector<Boxes>{room, scattered(4000, 1)}), Clusters{});
+  return room;
 }
 
-TEST(MergeClusters, SkipsEmptyMeshesAndAcceptsNone) {
-  EXPECT_EQ(mergeClusters({}), Clusters{});
-  EXPECT_EQ(mergeClusters(std::vector<Boxes>{{}, scattered(100, 1)}), Clusters{});
-  EXPECT_EQ(mergeClusters(std::vector<Boxes>{{}, scattered(100, 1), {}, scattered(100, 2)}), (Clusters{{1, 3}}));
+class MergeClusters : public testing::TestWithParam<TreeBuilder> {
+ protected:
+  static Clusters clusters(const std::vector<Boxes>& meshes) { return mergeClusters(meshes, GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Builders, MergeClusters, testing::Values(TreeBuilder::halving, TreeBuilder::surfaceArea),
+                         [](const auto& test) {
+                           return test.param == TreeBuilder::halving ? "Halving" : "SurfaceArea";
+                         });
+
+TEST_P(MergeClusters, JoinsMeshesThatFillTheSameSpace) {
+  EXPECT_EQ(clusters({scattered(500, 1), scattered(2000, 2), scattered(1000, 3)}), (Clusters{{0, 1, 2}}));
+}
+
+TEST_P(MergeClusters, KeepsMeshesApartThatDoNotOverlap) {
+  EXPECT_EQ(clusters({scattered(500, 1), scattered(500, 2, {2, 0, 0}), scattered(500, 3, {0, 3, 0})}), Clusters{});
+}
+
+TEST_P(MergeClusters, FormsAClusterPerPartOfTheSpace) {
+  Clusters found =
+      clusters({scattered(400, 1), scattered(400, 2, {5, 0, 0}), scattered(400, 3), scattered(400, 4, {5, 0, 0})});
+  std::ranges::sort(found);
+  EXPECT_EQ(found, (Clusters{{0, 2}, {1, 3}}));
+}
+
+// The triangles of the room would lie as deep in a tree of halves as the small ones. Other builders place them near the root.
+TEST_P(MergeClusters, JoinsAFewLargeTrianglesUnlessTheTreeIsHalved) {
+  const bool halving = GetParam() == TreeBuilder::halving;
+  EXPECT_EQ(clusters({room(), scattered(50, 1)}), halving ? Clusters{} : (Clusters{{0, 1}}));
+}
+
+TEST_P(MergeClusters, SkipsEmptyMeshesAndAcceptsNone) {
+  EXPECT_EQ(clusters({}), Clusters{});
+  EXPECT_EQ(clusters({{}, scattered(100, 1)}), Clusters{});
+  EXPECT_EQ(clusters({{}, scattered(100, 1), {}, scattered(100, 2)}), (Clusters{{1, 3}}));
 }
 
 }  // namespace

@@ -60,15 +60,6 @@ TEST(SpatialOrder, GivesTheLeftHalfTheExtraBox) {
   EXPECT_EQ((std::vector<std::uint32_t>(order.begin(), order.begin() + 3)), (std::vector<std::uint32_t>{1, 3, 4}));
 }
 
-TEST(SpatialOrder, ComputesTheCostOfASmallTree) {
-  // Areas for unit cubes at x = 0, 1, 2 and the tree ((0 1) 2): three leaves of 6, the pair 10, the root 14.
-  std::vector<Bounds3> boxes;
-  for (int x = 0; x < 3; ++x) boxes.push_back({vec3(x, 0, 0), vec3(x + 1, 1, 1)});
-  EXPECT_NEAR(halvingTreeCost(boxes, identity(3)), (18.0 + 10.0 + 14.0) / 14.0, 1e-6);
-  EXPECT_NEAR(halvingTreeCost(boxes, std::vector<std::uint32_t>{0, 2, 1}), (18.0 + 14.0 + 14.0) / 14.0, 1e-6);
-  EXPECT_EQ(halvingTreeCost({}, {}), 0.0);
-}
-
 // The axis without extent must never be selected.
 TEST(SpatialOrder, SortsFlatGrids) {
   std::vector<Bounds3> boxes;
