@@ -1,71 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// For closest-hit and any-hit shaders on triangles: the payload of a hit, and the alpha test.
+// For closest-hit and any-hit shaders on triangles: the payload of a hit.
 #ifndef QUINTET_HIT_GLSL
 #define QUINTET_HIT_GLSL
 
 #include "hit_geometry.glsl"
-#include "payload.glsl"
-
-// Computes the barycentrics of the hit from the ray, because on some drivers a candidate that any-hit has rejected
-// overwrites the attributes of the committed hit (docs/design/quirks.md).
-vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2) {
-  const vec3 edge1 = p1 - p0;
-  const vec3 edge2 = p2 - p0;
-  const vec3 p = cross(direction, edge2);
-  const float determinant = dot(edge1, p);
-  const float inverse = determinant != 0.0 ? 1.0 / determinant : 0.0;
-  const vec3 s = origin - p0;
-  const vec3 q = cross(s, edge1);
-  vec2 b = clamp(vec2(dot(s, p), dot(direction, q)) * inverse, 0.0, 1.0);
-  return b / max(1.0, b.x + b.y);
-}
-
-// The members of the payload that are common to all hits: indices (instance, geometry, primitive) in the scene, and t.
-// `seed` is kept.
-HitPayload hitOf(uvec3 indices, uint seed) {
-  HitPayload hit;
-  hit.t = gl_HitTEXT;
-  hit.instance = indices.x;
-  hit.geometry = indices.y;
-  hit.primitive = indices.z;
-  hit.barycentric = vec2(0.0);
-#ifndef QUINTET_NO_PROCEDURALS
-  hit.part = 0u;
-#endif
-  setRaySeed(hit, seed);
-  return hit;
-}
+#include "triangle_hit.glsl"
 
 HitPayload hitOf(GeometryData geometry, uint seed) {
-  return hitOf(uvec3(gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT, hitTriangle(geometry)), seed);
+  return hitAt(gl_HitTEXT, uvec3(gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT, hitTriangle(geometry)), seed);
 }
 
 // The payload of a committed triangle hit; `seed` is kept.
 HitPayload triangleHit(vec2 attributes, uint seed) {
-  GeometryData geometry;
-  HitPayload hit;
-#ifdef QUINTET_MERGED_INSTANCES
-  const InstanceData instance = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT];
-  if ((instance.flags & kInstanceMerged) != 0u) {
-    const uint64_t merged = packUint2x32(uvec2(instance.firstGeometry, instance.firstLightSlot));
-    const uvec3 indices = Uvec3Array(merged).at[gl_PrimitiveID];
-    geometry = GeometryArray(frame.geometries).at[InstanceArray(frame.instances).at[indices.x].firstGeometry + indices.y];
-    hit = hitOf(indices, seed);
-  } else
-#endif
-  {
-    geometry = hitGeometry();
-    hit = hitOf(geometry, seed);
-  }
-#ifdef QUINTET_RECOMPUTE_BARYCENTRICS
-  const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
-  Vec3Array positions = Vec3Array(geometry.positions);
-  hit.barycentric =
-      barycentricsFromRay(gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, positions.at[v.x], positions.at[v.y], positions.at[v.z]);
-#else
-  hit.barycentric = attributes;
-#endif
-  return hit;
+  return triangleHitAt(driverIntersection(), gl_HitTEXT, attributes, gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, seed);
 }
 
 #endif

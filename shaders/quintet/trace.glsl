@@ -9,6 +9,9 @@
 #include "frame.glsl"
 #include "payload.glsl"
 #include <quintet/generated/program.glsl>
+#ifdef QUINTET_INLINE_TRACES
+#include "ray_query.glsl"
+#endif
 
 layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
 layout(location = 0) rayPayloadEXT HitPayload hitPayload;
@@ -39,10 +42,14 @@ void recordRay(vec3 origin, vec3 direction, float tmax, uint kind, bool hit) {
 
 // The closest surface along origin + t · direction, t in (0, tmax). `seed` is for stochastic alpha.
 HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
+#ifdef QUINTET_INLINE_TRACES
+  hitPayload = queryClosest(topLevelAS, origin, direction, tmax, seed);
+#else
   hitPayload.t = -1.0;
   setRaySeed(hitPayload, seed);
   traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, origin, 0.0, direction,
               tmax, 0);
+#endif
 #ifdef QUINTET_RECORD_RAYS
   recordRay(origin, direction, tmax, kRecordClosest, hitPayload.t >= 0.0);
 #endif
@@ -55,6 +62,13 @@ layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 // True if no surface lies between t = 0 and tmax; `seed` is for stochastic alpha. tmax 0: no ray. If only some
 // invocations have a ray, calling this from all of them is much faster (H200) than diverging here.
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
+#ifdef QUINTET_INLINE_TRACES
+  vec3 transmittance;
+  shadowPayload.visible = queryVisible(topLevelAS, origin, direction, tmax, transmittance) ? 1u : 0u;
+#ifndef QUINTET_NO_TRANSMITTANCE
+  shadowPayload.transmittance = transmittance;
+#endif
+#else
   const uint mask = tmax > 0.0 ? 0xFFu : 0u;
   shadowPayload.visible = 0u;
   setRaySeed(shadowPayload, seed);
@@ -63,6 +77,7 @@ bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
 #endif
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, mask, kRay_shadow,
               kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
+#endif
 #ifdef QUINTET_RECORD_RAYS
   if (tmax > 0.0) recordRay(origin, direction, tmax, kRecordShadow, shadowPayload.visible == 0u);
 #endif

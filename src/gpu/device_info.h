@@ -17,8 +17,9 @@ namespace quintet::gpu {
 // Driver defects that other layers work around. docs/design/quirks.md lists drivers, versions, workarounds and the
 // tests that fail once a driver is fixed.
 struct Quirks {
-  bool keepsPrimitiveOrder = false;    // builds a tree over the input order: sort primitives and instances first
-  bool slowInstances = false;          // traces in software: a ray pays for each instance whose box it enters
+  bool keepsPrimitiveOrder = false;  // builds a tree over the input order: sort primitives and instances first
+  bool slowInstances = false;        // traces in software: a ray pays for each instance whose box it enters
+  bool slowTraceCalls = false;       // a trace that calls shaders stores the caller's state in memory: use ray queries
   bool corruptsHitAttributes = false;  // rejected candidates overwrite hit attributes: recompute them in closest-hit
   bool noCompaction = false;           // the compacted size equals the full size
   bool changesNestedBuiltIns = false;  // built-ins that are read after a nested trace belong to the inner hit

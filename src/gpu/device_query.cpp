@@ -27,6 +27,7 @@ constexpr const char* kRequiredExtensions[] = {
 constexpr const char* kOptionalExtensions[] = {
     VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME,       // copies of acceleration structures, SBT access bit
     VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,                // hit groups that are compiled separately
+    VK_KHR_RAY_QUERY_EXTENSION_NAME,                       // traces without calls of shaders
     VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,                   // errors instead of the system's OOM killer
     VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,  // registers and stack sizes of a pipeline
     VK_KHR_SHADER_CLOCK_EXTENSION_NAME,                    // heat maps of the time
@@ -61,6 +62,7 @@ const Feature kOptionalFeatures[] = {
     QUINTET_FEATURE(rayTracingPipeline, rayTraversalPrimitiveCulling),
     QUINTET_FEATURE(rayTracingPipeline, rayTracingPipelineTraceRaysIndirect),  // launch sizes in device memory
     QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
+    QUINTET_FEATURE(rayQuery, rayQuery),
     QUINTET_FEATURE(pipelineExecutables, pipelineExecutableInfo),
     QUINTET_FEATURE(shaderClock, shaderSubgroupClock),
     QUINTET_FEATURE(vulkan13, dynamicRendering),  // lines over images; every device with Vulkan 1.3 has it
@@ -121,6 +123,7 @@ Quirks lavapipeQuirks(std::uint32_t version) {
   Quirks quirks;
   quirks.keepsPrimitiveOrder = version < kCommonBuilder;
   quirks.slowInstances = true;
+  quirks.slowTraceCalls = true;
   quirks.corruptsHitAttributes = true;
   quirks.noCompaction = true;
   quirks.changesNestedBuiltIns = true;
@@ -241,6 +244,7 @@ VkPhysicalDeviceFeatures2* DeviceFeatures::chain(const std::vector<std::string>&
   if (contains(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME)) append(accelerationStructure);
   if (contains(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) append(rayTracingPipeline);
   if (contains(extensions, VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME)) append(rayTracingMaintenance1);
+  if (contains(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME)) append(rayQuery);
   if (contains(extensions, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) append(pipelineExecutables);
   if (contains(extensions, VK_KHR_SHADER_CLOCK_EXTENSION_NAME)) append(shaderClock);
   return &core;

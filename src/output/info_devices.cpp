@@ -55,6 +55,7 @@ Json toJson(const gpu::DeviceInfo& device) {
           {"quirks",
            {{"keepsPrimitiveOrder", device.quirks.keepsPrimitiveOrder},
             {"slowInstances", device.quirks.slowInstances},
+            {"slowTraceCalls", device.quirks.slowTraceCalls},
             {"corruptsHitAttributes", device.quirks.corruptsHitAttributes},
             {"noCompaction", device.quirks.noCompaction}}}};
 }

@@ -13,6 +13,7 @@
 #include "program/description/generated_glsl.h"
 #include "program/gsn/lecture.h"
 #include "program/hit_shaders.h"
+#include "program/inline_traces.h"
 #include "quintet/shared/explain.h"
 #include "shader/include_resolver.h"
 #include "spirv/module.h"
@@ -150,7 +151,7 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
   if (!isHitStage(file))
     source.text = instrumentStage(source.text, source.stage, index, instrumentation, usesLibrary(program, file));
   source.name = program.path(file);
-  source.defines = defines;
+  source.defines = withTraces(program, defines, instrumentation);
   source.virtualFiles = generatedFiles(program);
   for (const auto& [name, text] : program.files) source.virtualFiles[program.path(name)] = text;
   return source;

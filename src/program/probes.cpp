@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "program/inline_traces.h"
 #include "spirv/module.h"
 #include "spirv/print_calls.h"
 #include "spirv/trace_calls.h"
 
 namespace quintet::program {
 namespace {
+
+bool isInlineTraces(const std::pair<std::string, std::string>& define) { return define.first == kInlineTraces; }
 
 std::vector<spirv::PrintCall> printCalls(const std::vector<std::uint32_t>& words) {
   if (!spirv::importsDebugPrintf(words)) return {};
@@ -74,6 +77,7 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
     const ProbedStage& stage = stages[k];
     const std::string& file = compiled.stages[stage.index].file;
     shader::Source source = stageSource(program, file, stage.index, defines, instrumentation);
+    if (stage.probes.heat) std::erase_if(source.defines, isInlineTraces);  // counts calls
     source.text = probedStage(source.text, source.stage, stage.probes, program.accumulation == Accumulation::program,
                               usesLibrary(program, file));
     source.optimize = false;  // the functions of the probes would be inlined

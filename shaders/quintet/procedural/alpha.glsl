@@ -5,8 +5,6 @@
 #define QUINTET_PROCEDURAL_ALPHA_GLSL
 
 #include "../coverage.glsl"
-#include "../sampling/hash.glsl"
-#include "../texture.glsl"
 #include "hit.glsl"
 
 // Coverage of the candidate `hit`.

@@ -15,6 +15,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "program/compile.h"
+#include "program/inline_traces.h"
 #include "program/load.h"
 #include "shader/library.h"
 
@@ -32,16 +33,19 @@ std::vector<Defines> variants() {
                              {"QUINTET_NO_PROCEDURAL_ALPHA", "1"},
                              {"QUINTET_NO_PROCEDURAL_PANES", "1"}};
   for (const bool lavapipe : {false, true})
-    for (const bool seeds : {false, true})
+    for (const bool alpha : {false, true})
       for (const bool transmittance : {false, true})
-        for (const bool recompute : {false, true}) {
-          if (recompute && !lavapipe) continue;
+        for (const bool panes : {false, true}) {  // specialized, but without them, lavapipe traces by ray queries
+          if (panes && !(lavapipe && transmittance)) continue;
+          if (lavapipe && transmittance && !alpha && !panes) continue;  // nothing could tint light
           Defines& defines = all.emplace_back(triangles);
-          if (!seeds) defines.emplace_back("QUINTET_NO_SEEDS", "1");
+          if (!alpha) defines.emplace_back("QUINTET_NO_SEEDS", "1");
           if (!transmittance) defines.emplace_back("QUINTET_NO_TRANSMITTANCE", "1");
-          if (lavapipe) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
-          if (lavapipe) defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
-          if (recompute) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+          if (!lavapipe) continue;
+          defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
+          if (!panes) defines.emplace_back(program::kInlineTraces, "1");
+          defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
+          if (alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
         }
   return all;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "program/inline_traces.h"
 #include "quintet/shared/material.h"
 #include "scene/model/material_textures.h"
 #include "scene/model/surface_class.h"
@@ -130,12 +131,16 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   features.alpha = alphaTriangles || anyPrimitives(scene, [&](const scene::PrimitiveSet& set) {
                      return scene::needsAlphaTest(scene, set);
                    });
+  features.boxes = anyPrimitives(scene, [](const scene::PrimitiveSet&) { return true; });
   return features;
 }
 
 Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
   Defines defines = features.defines;
   if (quirks.slowInstances) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
+  const bool panes =
+      std::ranges::none_of(defines, [](const auto& define) { return define.first == "QUINTET_NO_PANES"; });
+  if (quirks.slowTraceCalls && !features.boxes && !panes) defines.emplace_back(program::kInlineTraces, "1");
   if (!quirks.corruptsHitAttributes) return defines;
   defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
   if (features.alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");

@@ -19,6 +19,7 @@ using Defines = std::vector<std::pair<std::string, std::string>>;
 struct SceneFeatures {
   Defines defines;     // QUINTET_NO_…
   bool alpha = false;  // any geometry needs an alpha test
+  bool boxes = false;  // any geometry has an intersection shader
   bool operator==(const SceneFeatures&) const = default;
 };
 SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environmentInUse);

@@ -90,6 +90,24 @@ RenderedImage renderImage(const SceneBuilder& scene, const ImageOptions& options
   return image;
 }
 
+Layers renderLayers(render::DeviceScene& device, const scene::Scene& scene, const program::Program& program,
+                    const std::vector<std::string>& outputs) {
+  ImageOptions options;
+  options.width = options.height = 48;
+  options.program = program;
+  render::RenderSettings settings = settingsFor(scene.cameras.at(0), options);
+  settings.outputs = outputs;
+  render::Renderer renderer = makeRenderer(device, program, settings);
+  renderer.renderBatch();
+  Layers layers;
+  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+    const std::string& name = program.outputs[i].name;
+    if (name == "color" || std::ranges::count(outputs, name)) layers.planes.push_back(renderer.film().downloadBatch(i));
+  }
+  layers.rays = renderer.rays().rays;
+  return layers;
+}
+
 void expectUniform(const RenderedImage& image, const vec4& exact, const Tolerance& tolerance) {
   const std::size_t pixels = std::size_t{image.width()} * image.height();
   for (std::size_t c = 0; c < 4; ++c) {

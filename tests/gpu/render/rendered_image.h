@@ -61,6 +61,14 @@ class RenderedImage {
 
 RenderedImage renderImage(const SceneBuilder& scene, const ImageOptions& options = {});
 
+// Outputs of one batch with 48x48 pixels, in the order of the program: the color, and the requested ones.
+struct Layers {
+  std::vector<std::vector<vec4>> planes;
+  std::uint64_t rays = 0;
+};
+Layers renderLayers(render::DeviceScene& device, const scene::Scene& scene, const program::Program& program,
+                    const std::vector<std::string>& outputs = {});
+
 struct Tolerance {
   double error = 0.01;     // largest standard error of the image's mean, relative to the mean
   double rounding = 2e-5;  // largest rounding error of float arithmetic, relative to the exact value

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <random>
 #include <utility>
 
 namespace quintet::test {
@@ -92,6 +93,34 @@ int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::Col
                             static_cast<int>(scene.images.size()) - 1,
                             {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
   return static_cast<int>(scene.textures.size()) - 1;
+}
+
+scene::Geometry scatteredQuads(int count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(-0.5f, 0.5f);
+  const auto point = [&] { return vec3(unit(random), unit(random), unit(random)); };
+  scene::Geometry all;
+  for (int i = 0; i < count; ++i) {
+    const scene::Geometry one = quad(point(), 0.3f * point(), 0.3f * point());
+    const auto base = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
+    for (const uvec3& triangle : one.triangles) all.triangles.push_back(triangle + base);
+  }
+  return all;
+}
+
+SceneBuilder thicket() {
+  const mat4 turned = glm::rotate(scaled(-1.0f, 1.2f, 1.0f), 0.4f, vec3(0.3f, 1.0f, 0.1f));
+  SceneBuilder scene;
+  scene.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert(vec3(0.5f)));
+  scene.add(scatteredQuads(150, 1), lambert({0.6f, 0.3f, 0.2f}), turned);
+  scene.add(scatteredQuads(400, 2), lambert({0.2f, 0.6f, 0.3f}), turned);
+  scene.scene.materials.push_back(emitter(vec3(3.0f)));
+  scene::Geometry lights = scatteredQuads(20, 3);
+  lights.material = static_cast<int>(scene.scene.materials.size()) - 1;
+  scene.scene.meshes[2].geometries.push_back(lights);
+  scene.sky(vec3(0.4f)).camera(perspective({0.3f, 0.4f, 2.2f}, {0, 0, 0}, 40.0f));
+  return scene;
 }
 
 std::shared_ptr<const scene::Scene> boxScene() {

@@ -22,6 +22,9 @@ scene::Geometry box(const vec3& low, const vec3& high);  // front faces outside
 // Returns a convex polyhedron of 20 · 4^level flat triangles with its vertices on the sphere.
 scene::Geometry sphere(const vec3& center, float radius, int level);
 
+// Returns small quads in all directions within a unit cube around the origin.
+scene::Geometry scatteredQuads(int count, std::uint32_t seed);
+
 // Adds a texture with one row of RGBA texels and nearest filtering, so that filtering does not affect results. Returns its
 // index.
 int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba,
@@ -42,6 +45,10 @@ class SceneBuilder {
   scene::Scene scene;
   scene::Environment environment;  // black unless sky() was called
 };
+
+// A ground, and stems and leaves in the same space, turned and mirrored alike. The leaves (mesh 2) have two geometries, one of which
+// emits. The sky is bright.
+SceneBuilder thicket();
 
 mat4 moved(float x, float y, float z);
 mat4 scaled(float x, float y, float z);
