@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "rt/tree_cost.h"
+#include "rt/build_cost.h"
 
 namespace quintet::rt {
 

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "rt/spatial_order.h"
-#include "rt/tree_cost.h"
+#include "rt/build_cost.h"
 
 namespace quintet::rt {
 namespace {

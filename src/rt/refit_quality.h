@@ -11,7 +11,7 @@
 
 namespace quintet::rt {
 
-// The measure is the cost of halvingTreeCost() (tree_cost.h): the summed surface area of all boxes of a tree
+// The measure is the cost of halvingTreeCost() (build_cost.h): the summed surface area of all boxes of a tree
 // divided by that of its root, which is the expected number of boxes that a ray through the root meets. The tree halves
 // the spatial order of the build. With drivers that keep the input order it is the tree of the driver; elsewhere it
 // stands for the driver's tree, which is not known.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray costs in trees of both kinds of builders.
-#include "rt/tree_cost.h"
+#include "rt/build_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ double leastCost(const Boxes& boxes) {
   return sums.back() / areaOf(subsets - 1);
 }
 
-TEST(TreeCost, AddsTheAreasOfAHalvingTree) {
+TEST(BuildCost, AddsTheAreasOfAHalvingTree) {
   // Areas for unit cubes at x = 0, 1, 2 and the tree ((0 1) 2): three leaves of 6, the pair 10, the root 14.
   const Boxes boxes = unitCubes({0, 1, 2});
   EXPECT_NEAR(halvingTreeCost(boxes, std::vector<std::uint32_t>{0, 1, 2}), (18.0 + 10.0 + 14.0) / 14.0, 1e-6);
@@ -58,14 +58,14 @@ TEST(TreeCost, AddsTheAreasOfAHalvingTree) {
   EXPECT_EQ(halvingTreeCost({}, {}), 0.0);
 }
 
-TEST(TreeCost, IsThatOfTheBuilder) {
+TEST(BuildCost, IsThatOfTheBuilder) {
   // Cubes at 0, 1, 2 and 9: a halving tree pairs the last two, the other one separates the last.
   const Boxes boxes = unitCubes({0, 1, 2, 9});
   EXPECT_NEAR(treeCost(boxes, TreeBuilder::halving), (24.0 + 10.0 + 34.0 + 42.0) / 42.0, 1e-6);
   EXPECT_NEAR(treeCost(boxes, TreeBuilder::surfaceArea), (24.0 + 10.0 + 14.0 + 42.0) / 42.0, 1e-6);
 }
 
-TEST(TreeCost, IsCloseToTheLeast) {
+TEST(BuildCost, IsCloseToTheLeast) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Boxes boxes = mixed(9, seed);
     const double least = leastCost(boxes);
@@ -75,7 +75,7 @@ TEST(TreeCost, IsCloseToTheLeast) {
   }
 }
 
-TEST(TreeCost, AcceptsEqualAndFlatBoxes) {
+TEST(BuildCost, AcceptsEqualAndFlatBoxes) {
   EXPECT_EQ(treeCost({}, TreeBuilder::surfaceArea), 0.0);
   EXPECT_EQ(treeCost(Boxes(3, {vec3(1), vec3(1)}), TreeBuilder::surfaceArea), 0.0);  // points have no area
   EXPECT_NEAR(treeCost(Boxes(64, {vec3(0), vec3(1)}), TreeBuilder::surfaceArea), 127.0, 1e-6);

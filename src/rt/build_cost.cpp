@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rt/tree_cost.h"
+#include "rt/build_cost.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // What a ray costs in the bounding volume hierarchies that drivers build, to choose among inputs of a build on the host. The
 // cost is the expected number of boxes that a random ray through the root intersects: the sum of the surface areas of all
 // nodes, divided by that of the root (Goldsmith and Salmon 1987). Leaves contain one box.
-#ifndef QUINTET_RT_TREE_COST_H
-#define QUINTET_RT_TREE_COST_H
+#ifndef QUINTET_RT_BUILD_COST_H
+#define QUINTET_RT_BUILD_COST_H
 
 #include <cstdint>
 #include <span>
