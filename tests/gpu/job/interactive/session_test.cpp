@@ -605,7 +605,8 @@ TEST_F(SessionTest, OrbitsAroundAPickedPoint) {
 
 TEST_F(SessionTest, BecomesSharperInSteps) {
   RenderRequest large = request();
-  large.size = {256, 256};  // more than one launch
+  large.size = {256, 256};
+  large.launchSeconds = 1e-4;  // more than one launch on any device
   const auto session = makeSession(large);
   std::vector<unsigned> factors;
   for (int i = 0; i < 4; ++i) {
