@@ -211,6 +211,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   std::memcpy(info.pipelineCacheUuid.data(), core.pipelineCacheUUID, info.pipelineCacheUuid.size());
   info.software = properties.driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
   info.quirks = quirksOf(properties.driver.driverID, core.driverVersion);
+  info.quirks.slowTraceCalls = info.quirks.slowTraceCalls && info.rayQuery;
   return info;
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "rt/spatial_order.h"
 #include "rt/build_cost.h"
+#include "rt/spatial_order.h"
 
 namespace quintet::rt {
 namespace {

@@ -30,7 +30,7 @@ scene::Scene triangleScene(const scene::Material& material) {
 std::vector<std::string> compiledFiles(const scene::Scene& scene, const std::vector<std::string>& outputs,
                                        bool lavapipe) {
   gpu::Quirks quirks;
-  quirks.corruptsHitAttributes = quirks.keepsPrimitiveOrder = lavapipe;
+  quirks.corruptsHitAttributes = quirks.slowInstances = quirks.slowTraceCalls = lavapipe;
   const render::Defines defines =
       render::renderDefines(render::shaderDefines(render::sceneFeatures(scene, {}), quirks), outputs);
   const program::Program pathtracer = program::loadProgram("<programs/pathtracer>");
@@ -47,12 +47,15 @@ std::vector<std::string> compiledFiles(const scene::Scene& scene, const std::vec
 }
 
 TEST(ShippedPrograms, ServeScenesOfTriangles) {
-  scene::Material plain, glass, leaf, pane;
+  scene::Material plain, glass, mask, leaf, pane;
   glass.transmission = 1.0f, glass.thickness = 0.1f, glass.clearcoat = 1.0f;
+  mask.alphaMode = scene::AlphaMode::mask, mask.baseColor.a = 0.5f;
   leaf.alphaMode = scene::AlphaMode::blend, leaf.baseColor.a = 0.5f;
   pane.transmission = 1.0f, pane.roughness = 0.0f, pane.emissive = vec3(1.0f);
+  scene::Material paintedPane = pane;
+  paintedPane.alphaMode = scene::AlphaMode::blend, paintedPane.baseColor.a = 0.5f;
   for (const bool lavapipe : {false, true})
-    for (const scene::Material& material : {plain, glass, leaf, pane})
+    for (const scene::Material& material : {plain, glass, mask, leaf, pane, paintedPane})
       EXPECT_TRUE(compiledFiles(triangleScene(material), {}, lavapipe).empty()) << lavapipe;
 }
 
