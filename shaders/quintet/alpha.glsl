@@ -7,9 +7,9 @@
 #include "hit.glsl"
 
 // Coverage of the candidate: 0 or 1 for alpha mask, alpha for blend, 1 for all other materials.
-float alphaCoverage(vec2 barycentric) { return triangleCoverage(driverIntersection(), barycentric); }
+float alphaCoverage(vec2 barycentric) { return triangleCoverage(driverHitIndices(), barycentric); }
 
 // True if the candidate must be ignored: alpha mask below its cutoff, or blend with probability 1 - alpha.
-bool alphaRejects(vec2 barycentric, uint seed) { return triangleRejected(driverIntersection(), barycentric, seed); }
+bool alphaRejects(vec2 barycentric, uint seed) { return triangleRejected(driverHitIndices(), barycentric, seed); }
 
 #endif

@@ -5,7 +5,7 @@
 #ifndef QUINTET_COVERAGE_GLSL
 #define QUINTET_COVERAGE_GLSL
 
-#include "intersection.glsl"
+#include "hit_indices.glsl"
 #include "sampling/hash.glsl"
 #include "texture.glsl"
 
@@ -16,7 +16,7 @@ float coverageOf(MaterialData material, float alpha) {
 }
 
 // Coverage of a candidate, a triangle.
-float triangleCoverage(Intersection candidate, vec2 barycentric) {
+float triangleCoverage(HitIndices candidate, vec2 barycentric) {
   const GeometryData geometry = geometryOf(candidate.instance, candidate.geometry);
   const MaterialData material = MaterialArray(frame.materials).at[geometry.material];
   const uvec3 v = Uvec3Array(geometry.triangles).at[scenePrimitive(geometry, candidate.primitive)];
@@ -33,11 +33,11 @@ float triangleCoverage(Intersection candidate, vec2 barycentric) {
 }
 
 // True if the candidate must be ignored: alpha mask below its cutoff, or blend with probability 1 - alpha.
-bool triangleRejected(Intersection candidate, vec2 barycentric, uint seed) {
+bool triangleRejected(HitIndices candidate, vec2 barycentric, uint seed) {
   // Independent of all other random numbers of the path: a hash of the ray's seed and the primitive.
   const uint primitive = scenePrimitive(geometryOf(candidate.instance, candidate.geometry), candidate.primitive);
   const uint random = hashCombine(hashCombine(hashCombine(seed, candidate.instance), primitive), candidate.geometry);
-  return float(random >> 8) * (1.0 / 16777216.0) >= triangleCoverage(candidate, barycentric);
+  return unitFloat(random) >= triangleCoverage(candidate, barycentric);
 }
 
 #endif

@@ -12,7 +12,7 @@ HitPayload hitOf(GeometryData geometry, uint seed) {
 
 // The payload of a committed triangle hit; `seed` is kept.
 HitPayload triangleHit(vec2 attributes, uint seed) {
-  return triangleHitAt(driverIntersection(), gl_HitTEXT, attributes, gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, seed);
+  return triangleHitAt(driverHitIndices(), gl_HitTEXT, attributes, gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, seed);
 }
 
 #endif

@@ -3,14 +3,14 @@
 #ifndef QUINTET_HIT_GEOMETRY_GLSL
 #define QUINTET_HIT_GEOMETRY_GLSL
 
-#include "intersection.glsl"
+#include "hit_indices.glsl"
 
 // Hit kinds that the intersection shaders of solids and CSG trees report.
 const uint kHitEntering = 1u;
 const uint kHitLeaving = 2u;
 
-Intersection driverIntersection() {
-  return Intersection(uint(gl_InstanceCustomIndexEXT), uint(gl_GeometryIndexEXT), uint(gl_PrimitiveID));
+HitIndices driverHitIndices() {
+  return HitIndices(uint(gl_InstanceCustomIndexEXT), uint(gl_GeometryIndexEXT), uint(gl_PrimitiveID));
 }
 
 // Index of the triangle (box, solid, CSG tree) in the scene's order.

@@ -3,7 +3,7 @@
 #ifndef QUINTET_TRIANGLE_HIT_GLSL
 #define QUINTET_TRIANGLE_HIT_GLSL
 
-#include "intersection.glsl"
+#include "hit_indices.glsl"
 #include "payload.glsl"
 
 // Computes the barycentrics of the hit from the ray, because on some drivers a candidate that any-hit has rejected
@@ -37,7 +37,7 @@ HitPayload hitAt(float t, uvec3 indices, uint seed) {
 }
 
 // The payload of a committed triangle hit at distance t, with the driver's barycentrics. The ray is in object space.
-HitPayload triangleHitAt(Intersection at, float t, vec2 barycentric, vec3 origin, vec3 direction, uint seed) {
+HitPayload triangleHitAt(HitIndices at, float t, vec2 barycentric, vec3 origin, vec3 direction, uint seed) {
   uvec3 indices = uvec3(at.instance, at.geometry, at.primitive);
   GeometryData geometry;
 #ifdef QUINTET_MERGED_INSTANCES

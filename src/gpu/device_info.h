@@ -18,7 +18,7 @@ namespace quintet::gpu {
 // tests that fail once a driver is fixed.
 struct Quirks {
   bool keepsPrimitiveOrder = false;  // builds a tree over the input order: sort primitives and instances first
-  bool slowInstances = false;        // traces in software: a ray pays for each instance whose box it enters
+  bool slowInstances = false;        // traverses in software: each instance whose box a ray enters takes time, so merge
   bool slowTraceCalls = false;       // a trace that calls shaders stores the caller's state in memory: use ray queries
   bool corruptsHitAttributes = false;  // rejected candidates overwrite hit attributes: recompute them in closest-hit
   bool noCompaction = false;           // the compacted size equals the full size

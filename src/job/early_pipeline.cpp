@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 
+#include "program/load.h"
 #include "quintet/shared/frame.h"
 #include "spirv/module.h"
 
@@ -18,9 +19,6 @@ bool traces(const program::CompiledProgram::Stage& stage) {
   });
 }
 
-// The check has found no error in built-in programs. Those of users must be checked first: a wrong pipeline can crash a driver.
-bool isTrusted(const program::Program& program) { return program.origin.starts_with("<programs/"); }
-
 }  // namespace
 
 bool tracesOnlyFromRayGeneration(const program::Program& program, const program::CompiledProgram& compiled) {
@@ -33,7 +31,8 @@ bool tracesOnlyFromRayGeneration(const program::Program& program, const program:
 std::unique_ptr<EarlyPipeline> EarlyPipeline::make(gpu::Context& context, const program::Program& program,
                                                    const program::CompiledProgram& compiled,
                                                    const gpu::PipelineCache& cache) {
-  if (!compiled.ok || !isTrusted(program) || !tracesOnlyFromRayGeneration(program, compiled)) return nullptr;
+  // The check has found no error in built-in programs. Those of users must be checked first: a wrong pipeline can crash a driver.
+  if (!compiled.ok || !program::isBuiltIn(program) || !tracesOnlyFromRayGeneration(program, compiled)) return nullptr;
   try {
     return std::make_unique<EarlyPipeline>(context, program, compiled, cache);
   } catch (const std::exception&) {

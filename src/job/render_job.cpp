@@ -369,7 +369,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer, Pend
   program::RunnableProgram& runnable = checked.runnable;
   std::unique_ptr<CompleteProgram> complete;
   const bool isProbed = prints || runnable.countsHeat || runnable.countsRecursion;
-  if (draft && !isProbed && runnable.recursionDepth <= 1 && draft->ready()) {
+  if (draft && !isProbed && runnable.recursionDepth == 1 && draft->ready()) {
     complete.reset(
         new CompleteProgram{runnable,
                             {scene.context(), scene.set(), runnable.description, runnable.compiled,

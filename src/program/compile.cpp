@@ -151,7 +151,7 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
   if (!isHitStage(file))
     source.text = instrumentStage(source.text, source.stage, index, instrumentation, usesLibrary(program, file));
   source.name = program.path(file);
-  source.defines = withTraces(program, defines, instrumentation);
+  source.defines = definesOfStages(program, defines, instrumentation);
   source.virtualFiles = generatedFiles(program);
   for (const auto& [name, text] : program.files) source.virtualFiles[program.path(name)] = text;
   return source;

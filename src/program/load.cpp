@@ -240,6 +240,8 @@ Program loadBuiltIn(const std::string& name) {
 
 }  // namespace
 
+bool isBuiltIn(const Program& program) { return program.origin.starts_with("<programs/"); }
+
 std::vector<std::string> builtInPrograms() {
   std::vector<std::string> names;
   constexpr std::string_view kEnd = "/program.toml";

@@ -19,6 +19,9 @@ namespace quintet::program {
 // Errors in a lecture-form file are in Program::diagnostics instead.
 Program loadProgram(const std::string& nameOrPath);
 
+// Returns whether loadProgram() found the program in the binary, not in a folder.
+bool isBuiltIn(const Program& program);
+
 // Names of all built-in programs, sorted.
 std::vector<std::string> builtInPrograms();
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -100,7 +101,8 @@ class BinnedSplitter {
     for (const std::uint32_t k : node) centers.extend(bounds_[k].center());
     Split best;
     for (int axis = 0; axis < 3; ++axis)
-      if (centers.max[axis] > centers.min[axis]) tryAxis(node, centers, axis, best);
+      if (const float range = centers.max[axis] - centers.min[axis]; range > 0.0f && std::isfinite(range))
+        tryAxis(node, centers, axis, best);
     if (best.bin == 0) return node.size() / 2;
     const auto isLeft = [&](std::uint32_t k) { return binOf(bounds_[k], centers, best.axis) < best.bin; };
     const auto middle = std::ranges::partition(node, isLeft).begin();

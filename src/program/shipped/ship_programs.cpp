@@ -35,9 +35,9 @@ std::vector<Defines> variants() {
   for (const bool lavapipe : {false, true})
     for (const bool alpha : {false, true})
       for (const bool transmittance : {false, true})
-        for (const bool panes : {false, true}) {  // specialized, but without them, lavapipe traces by ray queries
+        for (const bool panes : {false, true}) {  // specialized, but lavapipe uses no ray queries with them
           if (panes && !(lavapipe && transmittance)) continue;
-          if (lavapipe && transmittance && !alpha && !panes) continue;  // nothing could tint light
+          if (lavapipe && transmittance && !alpha && !panes) continue;  // only alpha or panes tint light
           Defines& defines = all.emplace_back(triangles);
           if (!alpha) defines.emplace_back("QUINTET_NO_SEEDS", "1");
           if (!transmittance) defines.emplace_back("QUINTET_NO_TRANSMITTANCE", "1");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Acceleration structures that contain several instances of a scene. They serve drivers that traverse in software
-// (docs/design/quirks.md), where a ray is slow if it enters the trees of several meshes that fill the same space. Hits have the same values as without merging, because all instances of a cluster have the same transform. Only
+// (docs/design/quirks.md), where a ray is slow if it enters the trees of several meshes that fill the same space.
+// Hits have the same values as without merging, because all instances of a cluster have the same transform. Only
 // programs that identify triangles by triangleHit() can use them (program::Program::mergesInstances).
 #ifndef QUINTET_RENDER_SCENE_MERGED_INSTANCES_H
 #define QUINTET_RENDER_SCENE_MERGED_INSTANCES_H

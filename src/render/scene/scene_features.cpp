@@ -131,6 +131,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   features.alpha = alphaTriangles || anyPrimitives(scene, [&](const scene::PrimitiveSet& set) {
                      return scene::needsAlphaTest(scene, set);
                    });
+  features.panes = anyGeometry(scene, [&](const scene::Geometry& g) { return scene::isPane(scene, g); });
   features.boxes = anyPrimitives(scene, [](const scene::PrimitiveSet&) { return true; });
   return features;
 }
@@ -138,9 +139,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
 Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
   Defines defines = features.defines;
   if (quirks.slowInstances) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
-  const bool panes =
-      std::ranges::none_of(defines, [](const auto& define) { return define.first == "QUINTET_NO_PANES"; });
-  if (quirks.slowTraceCalls && !features.boxes && !panes) defines.emplace_back(program::kInlineTraces, "1");
+  if (quirks.slowTraceCalls && !features.boxes && !features.panes) defines.emplace_back(program::kInlineTraces, "1");
   if (!quirks.corruptsHitAttributes) return defines;
   defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
   if (features.alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");

@@ -20,6 +20,7 @@ struct SceneFeatures {
   Defines defines;     // QUINTET_NO_…
   bool alpha = false;  // any geometry needs an alpha test
   bool boxes = false;  // any geometry has an intersection shader
+  bool panes = false;  // any geometry is a pane
   bool operator==(const SceneFeatures&) const = default;
 };
 SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environmentInUse);

@@ -46,8 +46,8 @@ class SceneBuilder {
   scene::Environment environment;  // black unless sky() was called
 };
 
-// A ground, and stems and leaves in the same space, turned and mirrored alike. The leaves (mesh 2) have two geometries, one of which
-// emits. The sky is bright.
+// A ground, and stems and leaves in the same space, turned and mirrored alike. The leaves (mesh 2) have two
+// geometries, one of which emits. The sky is bright.
 SceneBuilder thicket();
 
 mat4 moved(float x, float y, float z);

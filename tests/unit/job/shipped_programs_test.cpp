@@ -59,6 +59,14 @@ TEST(ShippedPrograms, ServeScenesOfTriangles) {
       EXPECT_TRUE(compiledFiles(triangleScene(material), {}, lavapipe).empty()) << lavapipe;
 }
 
+// A material that no triangle has.
+TEST(ShippedPrograms, ServeScenesWithAnUnusedPane) {
+  scene::Scene scene = triangleScene({});
+  scene.materials.emplace_back().transmission = 1.0f;
+  scene.materials.back().roughness = 0.0f;
+  for (const bool lavapipe : {false, true}) EXPECT_TRUE(compiledFiles(scene, {}, lavapipe).empty()) << lavapipe;
+}
+
 TEST(ShippedPrograms, OtherOutputsAreCompiled) {
   EXPECT_EQ(compiledFiles(triangleScene({}), {"albedo"}, false), std::vector<std::string>{"pathtracer.rgen"});
 }

@@ -20,7 +20,7 @@ const Defines kOpaque{{"QUINTET_NO_SEEDS", "1"}, {kInlineTraces, "1"}};
 const Defines kAlpha{{kInlineTraces, "1"}};
 
 bool isInline(const Program& program, const Defines& defines, Instrumentation instrumentation = Instrumentation::none) {
-  const Defines result = withTraces(program, defines, instrumentation);
+  const Defines result = definesOfStages(program, defines, instrumentation);
   return std::ranges::any_of(result, [](const auto& define) { return define.first == kInlineTraces; });
 }
 
@@ -43,7 +43,7 @@ TEST(InlineTraces, RequireThatTheDeviceAndTheScenePermitThem) {
 
 TEST(InlineTraces, KeepOtherDefinitions) {
   const Program program = loadProgram("pathtracer");
-  EXPECT_EQ(withTraces(program, kOpaque, Instrumentation::checks), (Defines{{"QUINTET_NO_SEEDS", "1"}}));
+  EXPECT_EQ(definesOfStages(program, kOpaque, Instrumentation::checks), (Defines{{"QUINTET_NO_SEEDS", "1"}}));
 }
 
 // The shadow rays of `ao` test alpha at random. Without a hit group for alpha, all triangles are opaque.
@@ -71,9 +71,20 @@ TEST(InlineTraces, DoNotReplaceOtherShaders) {
   Program leaves = loadProgram("pathtracer");
   leaves.hitGroups[1].shaders["radiance"].anyHit = "leaf.rahit";
   EXPECT_FALSE(isInline(leaves, kAlpha));
-  EXPECT_TRUE(isInline(leaves, kOpaque));  // any-hit shaders do not run for opaque triangles
-  leaves.anyHitForAll = true;
-  EXPECT_FALSE(isInline(leaves, kOpaque));
+  EXPECT_FALSE(isInline(leaves, kOpaque));  // it runs for instances that are forced not to be opaque
+  Program forAll = loadProgram("pathtracer");
+  forAll.anyHitForAll = true;
+  EXPECT_FALSE(isInline(forAll, kOpaque));
+  Program photons = loadProgram("pathtracer");
+  photons.rays.push_back({.name = "photon", .miss = "<quintet/stages/radiance.rmiss>"});
+  EXPECT_FALSE(isInline(photons, kOpaque));
+  Program boxes = loadProgram("pathtracer");
+  std::erase_if(boxes.hitGroups,
+                [](const HitGroup& group) { return group.shaders.at("radiance").intersection.empty(); });
+  EXPECT_FALSE(isInline(boxes, kOpaque));
+  Program users = loadProgram("pathtracer");
+  users.origin = "programs/pathtracer";  // the check must see its calls
+  EXPECT_FALSE(isInline(users, kOpaque));
 }
 
 TEST(InlineTraces, AreNotUsedIfCallsAreObserved) {

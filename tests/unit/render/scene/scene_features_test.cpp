@@ -38,8 +38,7 @@ TEST(SceneFeatures, AreKnownBeforeImagesAreDecoded) {
         render::sceneFeatures(pending.scene(), scene::effectiveEnvironment(pending.scene()));
     const scene::Scene scene = std::move(pending).finish();
     const render::SceneFeatures late = render::sceneFeatures(scene, scene::effectiveEnvironment(scene));
-    EXPECT_EQ(early.defines, late.defines);
-    EXPECT_EQ(early.alpha, late.alpha);
+    EXPECT_EQ(early, late);
     EXPECT_EQ(late.alpha, channels == 4);
     gpu::Quirks quirks;
     EXPECT_EQ(render::shaderDefines(late, quirks), late.defines);

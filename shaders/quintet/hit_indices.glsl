@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle that a ray has intersected, as the driver reports it: by indices in the acceleration structure. Hit shaders have
-// these indices in built-in variables (hit_geometry.glsl), ray queries return them (ray_query.glsl). Any stage can include this
-// file.
-#ifndef QUINTET_INTERSECTION_GLSL
-#define QUINTET_INTERSECTION_GLSL
+// The indices of a candidate or a hit as the driver reports them. Built-in variables of hit shaders have them
+// (hit_geometry.glsl), and ray queries return them (ray_query.glsl). Any stage can include this file.
+#ifndef QUINTET_HIT_INDICES_GLSL
+#define QUINTET_HIT_INDICES_GLSL
 
 #include "frame.glsl"
 
-struct Intersection {
+struct HitIndices {
   uint instance;   // gl_InstanceCustomIndexEXT
   uint geometry;   // gl_GeometryIndexEXT
   uint primitive;  // gl_PrimitiveID
