@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traces by ray queries (lavapipe) find the same hits as calls of the hit and miss shaders. On other devices, both programs call
 // shaders.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ void expectSameHits(const SceneBuilder& scene, std::initializer_list<const char*
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   EXPECT_EQ(definesInlineTraces(device), testContext().info().quirks.slowTraceCalls);
   for (const char* name : programs) {
-    const program::Program program = program::loadProgram(name);
+    const program::Program program = program::loadProgram(fmt::format("<programs/{}>", name));
     std::vector<std::string> ids;
     if (program.name == "pathtracer") ids = {"instance_id", "material_id", "primitive_id"};
     const Layers expected = renderLayers(device, scene.scene, withCalls(program), ids);
