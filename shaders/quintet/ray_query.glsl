@@ -19,8 +19,8 @@ const uint kQueryFlags = gl_RayFlagsNoneEXT;
 HitIndices candidateOf(rayQueryEXT query, out vec2 barycentric) {
   barycentric = rayQueryGetIntersectionBarycentricsEXT(query, false);
   return HitIndices(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false)),
-                      uint(rayQueryGetIntersectionGeometryIndexEXT(query, false)),
-                      uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)));
+                    uint(rayQueryGetIntersectionGeometryIndexEXT(query, false)),
+                    uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)));
 }
 
 // The closest surface, as stages/surface.rchit, stages/alpha.rahit and stages/radiance.rmiss report it.
@@ -36,8 +36,8 @@ HitPayload queryClosest(accelerationStructureEXT structure, vec3 origin, vec3 di
   }
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return hitAt(-1.0, uvec3(0u), seed);
   const HitIndices at = HitIndices(uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true)),
-                                       uint(rayQueryGetIntersectionGeometryIndexEXT(query, true)),
-                                       uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)));
+                                   uint(rayQueryGetIntersectionGeometryIndexEXT(query, true)),
+                                   uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)));
   return triangleHitAt(at, rayQueryGetIntersectionTEXT(query, true), rayQueryGetIntersectionBarycentricsEXT(query, true),
                        rayQueryGetIntersectionObjectRayOriginEXT(query, true),
                        rayQueryGetIntersectionObjectRayDirectionEXT(query, true), seed);

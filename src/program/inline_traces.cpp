@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string_view>
+#include <utility>
 
 #include "program/hit_group_binding.h"
 #include "program/load.h"
@@ -63,13 +64,17 @@ bool canQuery(const Program& program, bool alpha) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> withoutInlineTraces(Defines defines) {
+  std::erase_if(defines, [](const auto& define) { return define.first == kInlineTraces; });
+  return defines;
+}
+
 std::vector<std::pair<std::string, std::string>> definesOfStages(const Program& program, Defines defines,
                                                                  Instrumentation instrumentation) {
   const bool alpha =
       std::ranges::none_of(defines, [](const auto& define) { return define.first == "QUINTET_NO_SEEDS"; });
-  if (instrumentation != Instrumentation::none || !canQuery(program, alpha))
-    std::erase_if(defines, [](const auto& define) { return define.first == kInlineTraces; });
-  return defines;
+  const bool queries = instrumentation == Instrumentation::none && canQuery(program, alpha);
+  return queries ? defines : withoutInlineTraces(std::move(defines));
 }
 
 }  // namespace quintet::program

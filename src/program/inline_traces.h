@@ -17,6 +17,10 @@ namespace quintet::program {
 // The renderer defines it if the device and the scene permit ray queries. definesOfStages() removes it for other programs.
 constexpr const char* kInlineTraces = "QUINTET_INLINE_TRACES";
 
+// Returns the definitions without kInlineTraces.
+std::vector<std::pair<std::string, std::string>> withoutInlineTraces(
+    std::vector<std::pair<std::string, std::string>> defines);
+
 // Returns `defines`, without kInlineTraces if the stages must call shaders: the program is not built in or has hit or miss shaders
 // of its own, or the instrumentation observes calls.
 std::vector<std::pair<std::string, std::string>> definesOfStages(

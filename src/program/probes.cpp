@@ -15,8 +15,6 @@
 namespace quintet::program {
 namespace {
 
-bool isInlineTraces(const std::pair<std::string, std::string>& define) { return define.first == kInlineTraces; }
-
 std::vector<spirv::PrintCall> printCalls(const std::vector<std::uint32_t>& words) {
   if (!spirv::importsDebugPrintf(words)) return {};
   const std::optional<spirv::Module> module = spirv::Module::read(words);
@@ -77,7 +75,7 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
     const ProbedStage& stage = stages[k];
     const std::string& file = compiled.stages[stage.index].file;
     shader::Source source = stageSource(program, file, stage.index, defines, instrumentation);
-    if (stage.probes.heat) std::erase_if(source.defines, isInlineTraces);  // counts calls
+    if (stage.probes.heat) source.defines = withoutInlineTraces(std::move(source.defines));  // counts calls
     source.text = probedStage(source.text, source.stage, stage.probes, program.accumulation == Accumulation::program,
                               usesLibrary(program, file));
     source.optimize = false;  // the functions of the probes would be inlined

@@ -13,14 +13,15 @@
 namespace quintet::rt {
 namespace {
 
-double sumOfAreas(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order, Bounds3& whole) {
+// The sum of the areas of all nodes of a halving tree; `whole` is the root.
+double sumOfHalves(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order, Bounds3& whole) {
   if (order.size() == 1) {
     whole = bounds[order[0]];
     return whole.area();
   }
   const std::size_t left = (order.size() + 1) / 2;
   Bounds3 other;
-  const double sum = sumOfAreas(bounds, order.first(left), whole) + sumOfAreas(bounds, order.subspan(left), other);
+  const double sum = sumOfHalves(bounds, order.first(left), whole) + sumOfHalves(bounds, order.subspan(left), other);
   whole.extend(other);
   return sum + whole.area();
 }
@@ -124,7 +125,7 @@ double surfaceAreaTreeCost(std::span<const Bounds3> bounds) {
 double halvingTreeCost(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order) {
   if (order.empty()) return 0.0;
   Bounds3 whole;
-  const double sum = sumOfAreas(bounds, order, whole);
+  const double sum = sumOfHalves(bounds, order, whole);
   return whole.area() > 0.0f ? sum / whole.area() : 0.0;
 }
 
