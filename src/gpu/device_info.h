@@ -18,8 +18,8 @@ namespace quintet::gpu {
 // tests that fail once a driver is fixed.
 struct Quirks {
   bool keepsPrimitiveOrder = false;  // builds a tree over the input order: sort primitives and instances first
-  bool slowInstances = false;   // traverses in software: each instance whose box a ray enters takes time
-  bool slowTraceCalls = false;  // a trace that calls shaders stores the caller's state in memory: use ray queries
+  bool slowInstances = false;        // traverses in software: each instance whose box a ray enters takes time
+  bool slowTraceCalls = false;       // a trace that calls shaders stores the caller's state in memory: use ray queries
   bool corruptsHitAttributes = false;  // rejected candidates overwrite hit attributes: recompute them in closest-hit
   bool noCompaction = false;           // the compacted size equals the full size
   bool changesNestedBuiltIns = false;  // built-ins that are read after a nested trace belong to the inner hit
