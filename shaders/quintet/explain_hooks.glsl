@@ -38,6 +38,9 @@ void explainLightSample(bool delta, vec3 direction, float distance, vec3 radianc
   explain_(ExplainLightSample(delta ? 1u : 0u, direction, distance, radiance, pdf, bsdf, bsdfPdf, weight, throughput));
 }
 
+// The light sample of the last explainLightSample() is traced if u < survival. Without a call, it is traced.
+void explainLightRoulette(float survival, float u) { explain_(ExplainLightRoulette(survival, u)); }
+
 void explainVisibility(vec3 transmittance) { explain_(ExplainVisibility(transmittance)); }
 
 void explainBsdfSample(bool useful, bool delta, bool transmitted, bool straight, vec3 direction, float pdf, vec3 weight) {
@@ -84,6 +87,7 @@ void explainFound(uint source, vec3 radiance, vec3 throughput, uint scatterings)
 #define explainLobe(lobe, probability)
 #define explainLightChoice(index, probability)
 #define explainLightSample(delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, weight, throughput)
+#define explainLightRoulette(survival, u)
 #define explainVisibility(transmittance)
 #define explainBsdfSample(useful, delta, transmitted, straight, direction, pdf, weight)
 #define explainRoulette(survival, u, throughput)

@@ -26,6 +26,7 @@
 #define ExplainEmission gsnExplainEmission_
 #define ExplainHit gsnExplainHit_
 #define ExplainLightChoice gsnExplainLightChoice_
+#define ExplainLightRoulette gsnExplainLightRoulette_
 #define ExplainLightSample gsnExplainLightSample_
 #define ExplainLobe gsnExplainLobe_
 #define ExplainPathEnd gsnExplainPathEnd_

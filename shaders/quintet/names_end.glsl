@@ -19,6 +19,7 @@
 #undef ExplainEmission
 #undef ExplainHit
 #undef ExplainLightChoice
+#undef ExplainLightRoulette
 #undef ExplainLightSample
 #undef ExplainLobe
 #undef ExplainPathEnd

@@ -154,6 +154,8 @@ class Builder {
         });
       case kLogLightChoice: return read<ExplainLightChoice>(words, [&](const auto& r) { append(lightChoice(r)); });
       case kLogLightSample: return read<ExplainLightSample>(words, [&](const auto& r) { addLightSample(r); });
+      case kLogLightRoulette:
+        return read<ExplainLightRoulette>(words, [&](const auto& r) { addLightRoulette(r); });
       case kLogVisibility:
         return read<ExplainVisibility>(words, [&](const auto& r) { addVisibility(r.transmittance); });
       case kLogBsdfSample: return read<ExplainBsdfSample>(words, [&](const auto& r) { addBsdfSample(r); });
@@ -435,6 +437,13 @@ class Builder {
     light.set("bsdfPdf", r.bsdfPdf);
     light.set("misWeight", r.misWeight);
     light.set("throughput", floats(r.throughput));
+  }
+
+  void addLightRoulette(const shared::ExplainLightRoulette& r) {
+    ExplainedEvent& light = latest("light");
+    light.set("survival", r.survival);
+    light.set("u", r.u);
+    light.set("survived", r.u < r.survival);
   }
 
   void addVisibility(const vec3& transmittance) {

@@ -262,6 +262,11 @@ class TreeText {
     line(indent, "",
          Parts().add("BSDF", e, "bsdf").add("BSDF pdf", e, "bsdfPdf").add("MIS weight", e, "misWeight").text());
     line(indent, "", "throughput " + fieldText(e, "throughput"));
+    if (!e.find("survival")) return;
+    const bool survived = e.flag("survived");
+    line(indent, "",
+         fmt::format("roulette: {}: {} {} {}", survived ? "traced" : "not traced", fieldText(e, "u"), survived ? "<" : ">=",
+                     fieldText(e, "survival")));
   }
 
   void bsdf(const ExplainedEvent& e, std::size_t indent) {

@@ -61,6 +61,7 @@ std::string lightSummary(const ExplainedEvent& e) {
   if (!e.find("lightType")) return "no light can contribute";
   const std::string light = fmt::format("{} {}", e.text("lightType"), quoted(e.text("light")));
   if (!e.find("pdf")) return light + ": cannot contribute";
+  if (e.find("survival") && !e.flag("survived")) return light + ": not traced, by Russian roulette";
   return fmt::format("{}, pdf {}, MIS weight {}", light, shortText(e, "pdf"), shortText(e, "misWeight"));
 }
 

@@ -33,6 +33,7 @@ QT_CONSTANT kLogRoulette = 35u;     // ExplainRoulette
 QT_CONSTANT kLogEmission = 36u;     // ExplainEmission
 QT_CONSTANT kLogContribution = 37u;  // ExplainContribution
 QT_CONSTANT kLogPathEnd = 38u;       // ExplainPathEnd
+QT_CONSTANT kLogLightRoulette = 39u;  // ExplainLightRoulette
 
 // A store of this word, or of the next one, to the log marks where the data before or after a call belong. It is replaced
 // by stores of the number of the call site and of the data (spirv/log_call_data.h).
@@ -206,6 +207,13 @@ struct ExplainLightSample {
   vec3 throughput;  // of the path up to the surface
 };
 QT_SHARED_SIZE(ExplainLightSample, 68);
+
+// Russian roulette of the light sample, if its survival is not certain.
+struct ExplainLightRoulette {
+  float survival;  // probability with which the shadow ray is traced
+  float u;         // it is traced if u < survival
+};
+QT_SHARED_SIZE(ExplainLightRoulette, 8);
 
 struct ExplainVisibility {
   vec3 transmittance;  // of the shadow ray; 0: blocked

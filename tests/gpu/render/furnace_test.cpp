@@ -92,7 +92,7 @@ TEST(AlbedoSeries, MatchesInsideASphere) {
   for (const int bounces : {0, 1, 3, 12}) {
     SCOPED_TRACE(bounces);
     ImageOptions options = with("pathtracer", {"bounces=" + std::to_string(bounces)});
-    options.batches = bounces == 12 ? 64 : 16;  // Russian roulette begins at 5
+    options.batches = bounces == 12 ? 64 : 16;  // Russian roulette begins at 3
     expectUniform(renderImage(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), options), series(bounces), {.error = 0.01});
   }
 }

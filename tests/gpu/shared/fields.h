@@ -157,6 +157,7 @@ GPU_FIELDS(ExplainShading, normal, emission, baseColor, metallic, alpha, transmi
 GPU_FIELDS(ExplainLobe, lobe, probability);
 GPU_FIELDS(ExplainLightChoice, light, type, instance, geometry, primitive, probability);
 GPU_FIELDS(ExplainLightSample, delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, misWeight, throughput);
+GPU_FIELDS(ExplainLightRoulette, survival, u);
 GPU_FIELDS(ExplainVisibility, transmittance);
 GPU_FIELDS(ExplainBsdfSample, useful, delta, transmitted, straight, direction, pdf, weight);
 GPU_FIELDS(ExplainRoulette, survival, u, throughput);
