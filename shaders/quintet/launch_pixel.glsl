@@ -15,12 +15,16 @@ uint evenBits(uint x) {
   return (x | x >> 4) & 0x00FF00FFu;
 }
 
-// The pixel of this invocation. If the launch covers tiles, each row is one tile, with its pixels in Morton order.
-uvec2 launchPixel() {
-  if (launch.tiles == 0ul) return gl_LaunchIDEXT.xy + launch.offset;
+// The pixel of a column in this invocation's row of the launch. If the launch covers tiles, each row is one tile, with its pixels in
+// Morton order.
+uvec2 launchPixelIn(uint column) {
+  if (launch.tiles == 0ul) return uvec2(column, gl_LaunchIDEXT.y) + launch.offset;
   const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
-  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
+  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(column), evenBits(column >> 1));
 }
+
+// The pixel of this invocation.
+uvec2 launchPixel() { return launchPixelIn(gl_LaunchIDEXT.x); }
 
 // For programs with adaptive = true: true if this pixel is sampled in this batch. If false, write nothing.
 bool launchActive(uvec2 pixel) {

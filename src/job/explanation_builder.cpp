@@ -154,8 +154,7 @@ class Builder {
         });
       case kLogLightChoice: return read<ExplainLightChoice>(words, [&](const auto& r) { append(lightChoice(r)); });
       case kLogLightSample: return read<ExplainLightSample>(words, [&](const auto& r) { addLightSample(r); });
-      case kLogLightRoulette:
-        return read<ExplainLightRoulette>(words, [&](const auto& r) { addLightRoulette(r); });
+      case kLogLightRoulette: return read<ExplainLightRoulette>(words, [&](const auto& r) { addLightRoulette(r); });
       case kLogVisibility:
         return read<ExplainVisibility>(words, [&](const auto& r) { addVisibility(r.transmittance); });
       case kLogBsdfSample: return read<ExplainBsdfSample>(words, [&](const auto& r) { addBsdfSample(r); });

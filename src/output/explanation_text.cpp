@@ -265,8 +265,8 @@ class TreeText {
     if (!e.find("survival")) return;
     const bool survived = e.flag("survived");
     line(indent, "",
-         fmt::format("roulette: {}: {} {} {}", survived ? "traced" : "not traced", fieldText(e, "u"), survived ? "<" : ">=",
-                     fieldText(e, "survival")));
+         fmt::format("roulette: {}: {} {} {}", survived ? "traced" : "not traced", fieldText(e, "u"),
+                     survived ? "<" : ">=", fieldText(e, "survival")));
   }
 
   void bsdf(const ExplainedEvent& e, std::size_t indent) {

@@ -93,7 +93,8 @@ RenderedImage renderImage(const SceneBuilder& scene, const ImageOptions& options
 Layers renderLayers(render::DeviceScene& device, const scene::Scene& scene, const program::Program& program,
                     const std::vector<std::string>& outputs) {
   ImageOptions options;
-  options.width = options.height = 48;
+  options.width = 76;  // lavapipe: not a multiple of the columns that an invocation of the path tracer renders
+  options.height = 30;
   options.program = program;
   render::RenderSettings settings = settingsFor(scene.cameras.at(0), options);
   settings.outputs = outputs;

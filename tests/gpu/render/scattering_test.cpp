@@ -89,7 +89,8 @@ TEST(Scattering, AHalfSpaceHasChandrasekharsReflectance) {
     scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(testing::Message() << program << " " << multiple.x);
-      expectUniform(renderImage(scene, longPaths(program, multiple.x < 0.1f ? 32 : 16)), exact, {.error = 0.04, .rounding = 1e-3});
+      expectUniform(renderImage(scene, longPaths(program, multiple.x < 0.1f ? 32 : 16)), exact,
+                    {.error = 0.04, .rounding = 1e-3});
     }
   }
 }

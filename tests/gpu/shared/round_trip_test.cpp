@@ -60,10 +60,10 @@ using SharedStructs = testing::Types<
     shared::HeatPixel, shared::ExplainRay, shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage,
     shared::ExplainHit, shared::ExplainBox, shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore,
     shared::ExplainCamera, shared::ExplainSurface, shared::ExplainShading, shared::ExplainLobe,
-    shared::ExplainLightChoice, shared::ExplainLightSample, shared::ExplainLightRoulette, shared::ExplainVisibility, shared::ExplainBsdfSample,
-    shared::ExplainRoulette, shared::ExplainEmission, shared::ExplainContribution, shared::ExplainPathEnd,
-    shared::DeformTarget, shared::DeformSkinSet, shared::DeformMatrix, shared::DeformGeometry, shared::DeformPass,
-    shared::TreeCostNode, shared::TreeCostGeometry, shared::TreeCostList, shared::TreeCostPass>;
+    shared::ExplainLightChoice, shared::ExplainLightSample, shared::ExplainLightRoulette, shared::ExplainVisibility,
+    shared::ExplainBsdfSample, shared::ExplainRoulette, shared::ExplainEmission, shared::ExplainContribution,
+    shared::ExplainPathEnd, shared::DeformTarget, shared::DeformSkinSet, shared::DeformMatrix, shared::DeformGeometry,
+    shared::DeformPass, shared::TreeCostNode, shared::TreeCostGeometry, shared::TreeCostList, shared::TreeCostPass>;
 
 struct StructNames {
   template <class T>
