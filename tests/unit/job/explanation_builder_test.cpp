@@ -162,6 +162,7 @@ TEST(ExplanationBuilder, JoinsChoicesAndSamples) {
   log.add(kLogLightChoice, ExplainLightChoice{0, kLightPoint, 0, 0, 0, 0.5f}).add(kLogLobe, ExplainLobe{2, 0.75f});
   log.add(kLogLightSample, ExplainLightSample{1, {0, 1, 0}, 3, {9, 9, 9}, 0.5f, {1, 1, 1}, 0.25f, 1, {1, 1, 1}});
   log.add(kLogBsdfSample, ExplainBsdfSample{1, 0, 0, 0, {1, 0, 0}, 0.3f, {0.8f, 0.8f, 0.8f}});
+  log.add(kLogLightRoulette, ExplainLightRoulette{0.25f, 0.125f});
   log.add(kLogRay, rayTo(1)).add(kLogStage, ExplainStage{2}).add(kLogStageEnd, ExplainStageEnd{0});
   log.add(kLogRayEnd, ExplainRayEnd{1}).add(kLogVisibility, ExplainVisibility{{0.5f, 1, 1}});
   log.add(kLogLightChoice, ExplainLightChoice{7, kLightTriangle, 0, 2, 33, 0.25f});
@@ -169,6 +170,8 @@ TEST(ExplanationBuilder, JoinsChoicesAndSamples) {
   ASSERT_THAT(typesOf(events), ElementsAre("ray", "light", "bsdf", "ray", "light"));
   EXPECT_EQ(events[1].text("light"), "lamp");
   EXPECT_EQ(events[1].number("pdf"), 0.5f);
+  EXPECT_EQ(events[1].number("survival"), 0.25f);
+  EXPECT_TRUE(events[1].flag("survived"));
   EXPECT_EQ(events[2].text("lobe"), "diffuse");
   EXPECT_EQ(events[2].number("pdf"), 0.3f);
   EXPECT_EQ(events[3].vector("transmittance"), vec3(0.5f, 1, 1));
