@@ -22,6 +22,7 @@ layout(constant_id = QUINTET_ID_TRIANGLE_LIGHTS) const bool kHasTriangleLights =
 layout(constant_id = QUINTET_ID_SOLID_LIGHTS) const bool kHasSolidLights = true;
 layout(constant_id = QUINTET_ID_PUNCTUAL_LIGHTS) const bool kHasPunctualLights = true;
 layout(constant_id = QUINTET_ID_ENVIRONMENT) const bool kHasEnvironment = true;
+layout(constant_id = QUINTET_ID_LIGHT_TREE) const bool kHasLightTree = true;
 layout(constant_id = QUINTET_ID_VERTEX_COLORS) const bool kHasVertexColors = true;
 layout(constant_id = QUINTET_ID_TEXTURE_SLOTS) const uint kTextureSlots = 0xFFFFFFFFu;
 #else
@@ -99,6 +100,11 @@ const bool kHasPunctualLights = true;
 const bool kHasEnvironment = false;  // the environment is black
 #else
 const bool kHasEnvironment = true;
+#endif
+#ifdef QUINTET_NO_LIGHT_TREE
+const bool kHasLightTree = false;  // at most one light, so that the root of the tree is its only leaf
+#else
+const bool kHasLightTree = true;
 #endif
 #ifdef QUINTET_NO_VERTEX_COLORS
 const bool kHasVertexColors = false;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kTextureSlotsName = "QUINTET_TEXTURE_SLOTS";
 
 // Definitions that remove a feature. Others, such as QUINTET_NO_SEEDS, change members and stages: they stay definitions.
-constexpr std::array<std::pair<std::string_view, std::uint32_t>, 16> kFeatures{{
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 17> kFeatures{{
     {"QUINTET_NO_SOLID_TRANSMISSION", QUINTET_ID_SOLID_TRANSMISSION},
     {"QUINTET_NO_THIN_TRANSMISSION", QUINTET_ID_THIN_TRANSMISSION},
     {"QUINTET_NO_PANES", QUINTET_ID_PANES},
@@ -32,6 +32,7 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 16> kFeatures{{
     {"QUINTET_NO_SOLID_LIGHTS", QUINTET_ID_SOLID_LIGHTS},
     {"QUINTET_NO_PUNCTUAL_LIGHTS", QUINTET_ID_PUNCTUAL_LIGHTS},
     {"QUINTET_NO_ENVIRONMENT", QUINTET_ID_ENVIRONMENT},
+    {"QUINTET_NO_LIGHT_TREE", QUINTET_ID_LIGHT_TREE},
     {"QUINTET_NO_VERTEX_COLORS", QUINTET_ID_VERTEX_COLORS},
 }};
 

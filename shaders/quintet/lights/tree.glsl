@@ -6,6 +6,8 @@
 #ifndef QUINTET_LIGHTS_TREE_GLSL
 #define QUINTET_LIGHTS_TREE_GLSL
 
+#extension GL_EXT_control_flow_attributes : enable
+#include "../features.glsl"
 #include "../frame.glsl"
 #include "../sampling/hash.glsl"
 
@@ -89,7 +91,8 @@ uint lightFirstProbability(uint pair, LightSampleContext context, out uvec2 link
   float second = 0.0;
   bool share = false;
   links = uvec2(0u);
-  for (uint i = 0u; i < 2u; ++i) {  // a loop, so that compilers that inline the body compile it once
+  // A loop, so that compilers that inline the body compile it once. Unrolled, it takes 4 to 8 % more time on the H200.
+  [[dont_unroll]] for (uint i = 0u; i < 2u; ++i) {
     const LightNode node = LightNodeArray(frame.lightNodes).at[pair + i];
     first = second;
     second = lightImportance(node, context);
@@ -122,7 +125,7 @@ uint drawLight(LightSampleContext context, float u, uint bits, out float probabi
   uint link = LightNodeArray(frame.lightNodes).at[0].link;
   uint digits = uint(u * 16777216.0) << 7 | bits & 127u;  // 31 binary digits
   probability = LightNodeArray(frame.lightNodes).at[0].intensity > 0.0 ? 1.0 : 0.0;
-  while ((link & kLightNodeLeaf) == 0u && probability > 0.0) {
+  while (kHasLightTree && (link & kLightNodeLeaf) == 0u && probability > 0.0) {
     uvec2 links;
     const uint firstProbability = lightFirstProbability(link & kLightNodeIndex, context, links);
     if (firstProbability == kLightNoContribution) {
@@ -146,7 +149,7 @@ float lightLeafProbability(LightSampleContext context, uint leaf) {
   if (leaf == kNoLight) return 0.0;
   float probability = 1.0;
   uint link = LightNodeArray(frame.lightNodes).at[0].link;
-  for (uint at = 0u; at != leaf && probability > 0.0;) {
+  for (uint at = 0u; kHasLightTree && at != leaf && probability > 0.0;) {
     const uint pair = link & kLightNodeIndex;
     uvec2 links;
     const uint firstProbability = lightFirstProbability(pair, context, links);

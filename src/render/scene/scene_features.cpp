@@ -113,9 +113,12 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_SCATTERING", any([](const scene::Material& m) { return scene::scatters(m); }));
   without("QUINTET_NO_NESTED_MEDIA",
           any([](const scene::Material& m) { return scene::isMedium(m) && m.dielectricPriority != 0.0f; }));
-  without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
+  const bool emitters = any(emits);
+  const bool environmentLight = glm::any(glm::greaterThan(environmentScale, vec3(0.0f)));
+  without("QUINTET_NO_TRIANGLE_LIGHTS", emitters);
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
-  without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));
+  without("QUINTET_NO_ENVIRONMENT", environmentLight);
+  without("QUINTET_NO_LIGHT_TREE", emitters || scene.lights.size() + (environmentLight ? 1 : 0) > 1);
   const ProceduralFeatures procedural = proceduralFeatures(scene);
   without("QUINTET_NO_PROCEDURALS", procedural.solids);
   without("QUINTET_NO_CSG", procedural.csg);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lights/light_scene.h"
+#include "render/scene/scene_features.h"
 #include "scene/animation/keyframes.h"
 
 namespace quintet::test {
@@ -189,6 +190,46 @@ TEST(LightTreeDevice, DrawsFollowTheProbabilities) {
     if (expected[count] < 1e-3) expected[count] = 0.0;
     EXPECT_GT(chiSquareTest(observed, expected).pValue, sidak(0.01, 10)) << r;
     EXPECT_LT(chiSquareTest(observed, ofAnother).pValue, 1e-6) << r;
+  }
+}
+
+// With at most one light, the shaders of the scene have no tree. Draws and probabilities keep their bits.
+TEST(LightTreeDevice, ASingleLightNeedsNoTree) {
+  struct Out {
+    std::uint32_t light;
+    float drawn, asked;
+    bool operator==(const Out&) const = default;
+  };
+  const std::pair<std::string, std::string> withoutTree{"QUINTET_NO_LIGHT_TREE", "1"};
+  scene::Scene spot;
+  spot.lights.resize(1);
+  spot.lights[0].type = scene::LightType::spot;
+  spot.lights[0].intensity = vec3(2.0f);
+  for (const auto& [source, environment] : {std::pair(scene::Scene{}, scene::Environment{}),
+                                            std::pair(scene::Scene{}, sky()), std::pair(spot, scene::Environment{})}) {
+    const auto features = render::sceneFeatures(source, environment).defines;
+    EXPECT_EQ(std::ranges::count(features, withoutTree), 1);
+    const LightScene scene(source, environment);
+    const auto draws = [&](const Defines& defines) {
+      return runCompute<Out>(kReceiver + R"(
+        struct Out { uint light; float drawn; float asked; };
+        Out run(uint i, In v) {
+          Out result;
+          result.light = chooseLight(receiverOf(v), float(i) / 64.0, i, result.drawn);
+          result.asked = lightProbability(result.light, receiverOf(v));
+          return result;
+        }
+      )",
+                             receivers(manyLights(1)), 40, scene.options(defines));
+    };
+    EXPECT_EQ(draws({}), draws({withoutTree}));
+  }
+  scene::Scene spots = spot;
+  spots.lights.push_back(spot.lights[0]);
+  for (const auto& [source, environment] :
+       {std::pair(spots, scene::Environment{}), std::pair(spot, sky()),
+        std::pair(emissiveRectangle(vec3(1.0f), mat4(1.0f)), scene::Environment{})}) {
+    EXPECT_EQ(std::ranges::count(render::sceneFeatures(source, environment).defines, withoutTree), 0);
   }
 }
 
