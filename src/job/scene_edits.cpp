@@ -32,7 +32,8 @@ struct DeviceForm {
 };
 
 DeviceForm deviceForm(const scene::Scene& scene) {
-  // Materials do not affect what depends on the environment.
+  // Materials do not affect what depends on the environment alone. They add or remove the light tree only together with
+  // lights of triangles.
   return {render::sceneFeatures(scene, scene::Environment{}), check::sceneFacts(scene)};
 }
 

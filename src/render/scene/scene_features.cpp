@@ -118,6 +118,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_TRIANGLE_LIGHTS", emitters);
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
   without("QUINTET_NO_ENVIRONMENT", environmentLight);
+  // A surface that emits counts as several lights: its triangles.
   without("QUINTET_NO_LIGHT_TREE", emitters || scene.lights.size() + (environmentLight ? 1 : 0) > 1);
   const ProceduralFeatures procedural = proceduralFeatures(scene);
   without("QUINTET_NO_PROCEDURALS", procedural.solids);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The features of a scene are known before its images are decoded.
+// The features of a scene: they are known before its images are decoded, and state what its shaders can leave out.
 #include "render/scene/scene_features.h"
+
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "base/file.h"
 #include "io/codec.h"
+#include "render/lights/light_table.h"
 #include "scene/defaults/default_environment.h"
 #include "scene/gltf_builder.h"
 #include "scene/load.h"
@@ -45,6 +48,37 @@ TEST(SceneFeatures, AreKnownBeforeImagesAreDecoded) {
     quirks.corruptsHitAttributes = true;
     EXPECT_EQ(render::shaderDefines(late, quirks).size(), late.defines.size() + (channels == 4 ? 2 : 1));
   }
+}
+
+// The tree can only be left out if the table of lights, which the tree holds, has at most one.
+TEST(SceneFeatures, HaveALightTreeForSeveralLights) {
+  scene::Environment sky;
+  sky.constant = vec3(0.3f);
+  scene::Environment dark = sky;
+  dark.intensity = 0.0f;
+  const auto lit = [](std::size_t lights, const vec3& emission) {
+    scene::Scene scene;
+    scene.lights.resize(lights);
+    for (scene::Light& light : scene.lights) light.intensity = vec3(2.0f);
+    scene::Geometry geometry;
+    geometry.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
+    geometry.material = 0;
+    scene.materials.emplace_back().emissive = emission;
+    scene.meshes.emplace_back().geometries = {geometry};
+    scene.instances.emplace_back().mesh = 0;
+    return scene;
+  };
+  for (const std::size_t lights : {0u, 1u, 2u})
+    for (const vec3& emission : {vec3(0.0f), vec3(1.0f)})
+      for (const scene::Environment& environment : {scene::Environment{}, dark, sky}) {
+        const scene::Scene scene = lit(lights, emission);
+        const std::size_t count = render::buildLightTable(scene, environment).lights.size();
+        const bool without = std::ranges::count(render::sceneFeatures(scene, environment).defines,
+                                                render::Defines::value_type{"QUINTET_NO_LIGHT_TREE", "1"}) > 0;
+        EXPECT_EQ(without, count <= 1) << lights << " lights, emission " << emission.x << ", environment "
+                                       << environment.constant.x << " x " << environment.intensity;
+      }
 }
 
 }  // namespace
