@@ -85,17 +85,22 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
 
 }  // namespace
 
-FileKind fileKind(const std::filesystem::path& file) {
-  if (file == "-") return FileKind::png;
+std::optional<FileKind> kindByExtension(const std::filesystem::path& file) {
   const std::string extension = lowerCase(file.extension().string());
   if (extension == ".png") return FileKind::png;
   if (extension == ".exr") return FileKind::exr;
   if (extension == ".hdr") return FileKind::hdr;
   if (extension == render::kFilmExtension) return FileKind::film;
+  return std::nullopt;
+}
+
+FileKind fileKind(const std::filesystem::path& file) {
+  if (file == "-") return FileKind::png;
+  if (const std::optional<FileKind> kind = kindByExtension(file)) return *kind;
   // Devices have no extension: /dev/null, /dev/stdout, a pipe.
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
-  if (extension.empty() && std::filesystem::is_other(status)) return FileKind::png;
+  if (file.extension().empty() && std::filesystem::is_other(status)) return FileKind::png;
   if (std::filesystem::is_directory(status)) checkWritable(file);  // the clearer message
   throw UsageError(fmt::format("{}: the extension must be .png, .exr, .hdr or .qfilm", file.string()));
 }

@@ -21,7 +21,9 @@ namespace quintet::output {
 
 enum class FileKind { png, exr, hdr, film };
 
-// By the extension, in any case; "-" and devices without extension are PNG. Throws UsageError.
+// By the extension, in any case; unset for other extensions and without one.
+std::optional<FileKind> kindByExtension(const std::filesystem::path& file);
+// The same; "-" and devices without extension are PNG. Throws UsageError.
 FileKind fileKind(const std::filesystem::path& file);
 
 // "-" means PNG on standard output; "-.png", "-.exr" and "-.hdr" name the format.

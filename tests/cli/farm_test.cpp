@@ -241,14 +241,19 @@ TEST_F(Farm, RejectsWrongPlans) {
   expectRejected({"--spp", "16"}, 2, {"--parts"});
   expectRejected({"--spp", "16", "--parts", "5"}, 2, {"5 parts", "4 batches"});
   expectRejected({"--spp", "16", "--parts", "0"}, 2, {"--parts"});
-  expectRejected({"--time", "5", "--parts", "2"}, 2, {"--parts", "--spp"});
-  expectRejected({"--spp", "16", "--until-error", "0.1", "--parts", "2"}, 2, {"batches", "target error"});
+  expectRejected({"--time", "5", "--parts", "2"}, 2, {"--time", "--spp"});
+  expectRejected({"--spp", "16", "--until-error", "0.1", "--parts", "2"}, 2, {"--until-error", "--spp"});
+  expectRejected({"--spp", "16", "--adaptive", "--parts", "2"}, 2, {"--adaptive", "--spp"});
   expectRejected({"--spp", "16", "--parts", "2", "--set", "nosuch=1"}, 2, {"nosuch"});
   expectRejected({"--spp", "16", "--parts", "2", "--env", "none.hdr"}, 1, {"none.hdr"});
   expectRejected({"--spp", "16", "--parts", "2", "--image", "a.mp4"}, 2, {"a.mp4", "frames"});
   expectRejected({"--spp", "16", "--parts", "2", "--image", "a.txt"}, 2, {"a.txt", ".qfilm"});
   expectRejected({"--spp", "16", "--parts", "2", "--sbatch", "a\nb"}, 2, {"line break"});
   expectError(quintet({"farm", "plan", "scene.gltf", "--parts", "2"}), 2, {"-o FOLDER"});
+  for (const std::string name : {"out.png", "OUT.EXR", "out.qfilm", "out.mp4"}) {
+    expectError(quintet({"farm", "plan", "scene.gltf", "--parts", "2", "-o", name}), 2, {name, "--image"});
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name));
+  }
   expectError(quintet({"farm", "plan", "none.gltf", "--parts", "2", "-o", "farm"}), 1, {"none.gltf"});
   expectPlan({"--spp", "16", "--parts", "2"});
   expectPlan({"--spp", "16", "--parts", "2"});

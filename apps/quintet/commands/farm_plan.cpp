@@ -131,6 +131,22 @@ std::string summaryJson(const farm::Plan& plan, const farm::ScriptOptions& scrip
                            {"tasks", farm::taskCount(plan, scripts)}});
 }
 
+// In other commands, -o is the image.
+void checkFolder(const std::filesystem::path& folder) {
+  const bool isFile = output::kindByExtension(folder) || output::videoFormat(folder);
+  if (isFile && !std::filesystem::is_directory(folder))
+    throw UsageError(fmt::format("-o {}: this would be the folder of the plan; name the image with --image {}",
+                                 folder.string(), folder.filename().string()));
+}
+
+// Only frames can have other limits than a number of samples.
+void checkLimits(const job::RenderLimits& limits) {
+  const char* option = limits.adaptive ? "--adaptive" : limits.error ? "--until-error" : limits.seconds ? "--time" : "";
+  if (*option)
+    throw UsageError(fmt::format(
+        "{}: the parts of an image need a fixed number of samples, the same for all pixels; use --spp alone", option));
+}
+
 std::vector<farm::Part> partsOf(const FarmPlanOptions& options, bool frames) {
   const std::optional<std::uint64_t> count =
       parseInteger("--parts", options.parts, 1, static_cast<double>(farm::kMaxParts));
@@ -140,9 +156,7 @@ std::vector<farm::Part> partsOf(const FarmPlanOptions& options, bool frames) {
     return farm::splitWork(first, last, count.value_or(last - first + 1), "frame", "frames");
   }
   if (!count) throw UsageError("--parts is missing: into how many parts the samples are split");
-  if (!request.limits.samples)
-    throw UsageError(
-        "--parts: a render that ends by time or error has no parts; give the number of samples with --spp");
+  checkLimits(request.limits);
   const std::uint64_t batches = (*request.limits.samples + render::kBatchSamples - 1) / render::kBatchSamples;
   return farm::splitWork(0, batches - 1, *count, "batch", "batches");
 }
@@ -180,6 +194,7 @@ int farmPlanCommand(Arguments arguments) {
   if (!parse(table, arguments)) return 0;
   if (options.texts.scene.empty()) throw UsageError("no scene given; see 'quintet farm plan --help'");
   if (options.folder.empty()) throw UsageError("no folder given (-o FOLDER); see 'quintet farm plan --help'");
+  checkFolder(options.folder);
   OptionTable planned("farm plan", "");
   declarePlanned(planned, options.texts, options.render);
 
