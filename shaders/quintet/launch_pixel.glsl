@@ -7,20 +7,14 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TileArray { FilmTile at[]; };
 
-// Extracts bits 0, 2, 4, … into adjacent bits.
-uint evenBits(uint x) {
-  x &= 0x55555555u;
-  x = (x | x >> 1) & 0x33333333u;
-  x = (x | x >> 2) & 0x0F0F0F0Fu;
-  return (x | x >> 4) & 0x00FF00FFu;
-}
+// The tile that this invocation belongs to, if the launch covers tiles. Its rows are those of the tiles, one tile after another.
+FilmTile launchTile() { return TileArray(launch.tiles).at[(gl_LaunchIDEXT.y + launch.offset.y) / kTileSize]; }
 
-// The pixel of a column in this invocation's row of the launch. If the launch covers tiles, each row is one tile, with its pixels in
-// Morton order.
+// The pixel of a column in this invocation's row of the launch.
 uvec2 launchPixelIn(uint column) {
   if (launch.tiles == 0ul) return uvec2(column, gl_LaunchIDEXT.y) + launch.offset;
-  const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
-  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(column), evenBits(column >> 1));
+  const FilmTile tile = launchTile();
+  return frame.filmOffset + uvec2(tile.x + column, tile.y + (gl_LaunchIDEXT.y + launch.offset.y) % kTileSize);
 }
 
 // The pixel of this invocation.
@@ -32,7 +26,7 @@ bool launchActive(uvec2 pixel) {
   const uvec2 film = pixel - frame.filmOffset;
   if (film.x >= frame.filmWidth || film.y >= frame.filmHeight) return false;
   const uint cell = (film.x + film.y) & 1u;
-  return TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y].drawn[cell] != 0u;
+  return launchTile().drawn[cell] != 0u;
 }
 
 #endif

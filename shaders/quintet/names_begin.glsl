@@ -72,7 +72,7 @@
 #define Vec2Array gsnVec2Array_
 #define Vec3Array gsnVec3Array_
 #define Vec4Array gsnVec4Array_
-#define evenBits gsnEvenBits_
+#define launchTile gsnLaunchTile_
 #define kInfinity gsnInfinity_
 #define kPi gsnPi_
 #define launch gsnPush_

@@ -65,7 +65,7 @@
 #undef Vec2Array
 #undef Vec3Array
 #undef Vec4Array
-#undef evenBits
+#undef launchTile
 #undef frame
 #undef kInfinity
 #undef kPi

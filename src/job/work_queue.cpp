@@ -74,6 +74,7 @@ std::optional<WorkPiece> WorkQueue::cut(double speed, double total, bool isFaste
     const double samples = std::max(kShare * remaining_ * speed / std::max(total, speed), kMinPieceSeconds * speed);
     count = std::max(least, static_cast<std::uint32_t>(std::min<double>(left, std::ceil(samples / batch.unitSamples))));
   }
+  count = (count + least - 1) / least * least;
   // A rest of a few rows would be a launch of its own.
   if (left < count + least) count = left;
   WorkPiece piece{batches_[batch_], unit_, count};

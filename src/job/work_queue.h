@@ -59,7 +59,8 @@ class WorkQueue {
 
   bool empty() const;
 
-  static constexpr std::uint32_t kMinRows = 8;  // of a piece; launches of fewer rows waste the device
+  // Pieces have multiples of so many rows, except the last one of a batch. Launches of fewer rows waste the device.
+  static constexpr std::uint32_t kMinRows = render::kLaunchRows;
   static constexpr std::uint32_t kMinTiles = 1;
 
  private:

@@ -50,7 +50,7 @@ for count in $counts; do
   done
   if [ -z "$first" ]; then first=$count firstProcess=$process firstRender=$render; fi
   same=same
-  "$bin/quintet" compare "$folder/$count.exr" "$folder/$first.exr" --max 0 >"$folder/difference" 2>&1 || {
+  "$bin/quintet" compare "$folder/$count.exr" "$folder/$first.exr" --metric rmse --max 0 >"$folder/difference" 2>&1 || {
     same=DIFFERENT
     status=1
   }

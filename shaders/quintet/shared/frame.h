@@ -164,7 +164,7 @@ struct Launch {
   uvec2 offset;              // pixel of launch invocation (0,0)
   uint firstSample;  // index of the first sample of this launch; index of the frame, if the program accumulates
   uint sampleCount;  // samples to take per pixel in this launch
-  Address tiles;     // FilmTile[]: the launch covers these, one per row; 0: a rectangle of pixels
+  Address tiles;     // FilmTile[]: the launch covers these, kTileSize rows for each; 0: a rectangle of pixels
 };
 QT_SHARED_SIZE(Launch, 40);
 

@@ -89,6 +89,12 @@ std::uint64_t SampleCounts::batches() const {
   return sum;
 }
 
+std::uint32_t launchEnd(std::uint32_t row, std::uint32_t rows, std::uint32_t height) {
+  if (rows >= height - row) return height;
+  const std::uint32_t aligned = (row + rows) / kLaunchRows * kLaunchRows;
+  return aligned > row ? aligned : row + rows;
+}
+
 std::uint32_t tileColumns(std::uint32_t width) { return (width + shared::kTileSize - 1) / shared::kTileSize; }
 std::uint32_t tileCount(const Region& region) { return tileColumns(region.width) * tileColumns(region.height); }
 

@@ -17,6 +17,13 @@ namespace quintet::render {
 
 using shared::kBatchSamples;
 
+// However a film is divided into launches, each begins at a multiple of so many rows, unless a launch is shorter than that.
+// Groups of 32 invocations (8 x 4 on NVIDIA) then have the same pixels. On NVIDIA, the pixels of a group decide which
+// triangle a ray hits if it meets the common edge of two (docs/design/quirks.md).
+inline constexpr std::uint32_t kLaunchRows = 8;
+// Returns the end of a launch that begins at `row` and has at most `rows` of the rows up to `height`.
+std::uint32_t launchEnd(std::uint32_t row, std::uint32_t rows, std::uint32_t height);
+
 // A rectangle of an image in pixels, measured from the top left corner.
 struct Region {
   std::uint32_t x = 0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "render/film/film_state.h"
+
 namespace quintet::render {
 
 LaunchQueue::LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics)
@@ -17,12 +19,12 @@ LaunchQueue::LaunchQueue(gpu::Context& context, const RenderSettings& settings, 
   assert(maxInFlight_ >= 1 && maxInFlight_ <= kMaxLaunchesInFlight);
 }
 
-std::uint32_t LaunchQueue::rows(double width, std::uint32_t rowsLeft, std::uint32_t samples) const {
+std::uint32_t LaunchQueue::rows(double width, std::uint32_t row, std::uint32_t height, std::uint32_t samples) const {
   const auto limit = static_cast<double>(context_.info().limits.maxLaunchInvocations);
   double rows =
       pixelSamplesPerSecond_ > 0 ? launchSeconds_ * pixelSamplesPerSecond_ / (width * samples) : 16384.0 / width;
   rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
-  return std::min(rowsLeft, static_cast<std::uint32_t>(rows));
+  return launchEnd(row, static_cast<std::uint32_t>(rows), height) - row;
 }
 
 bool LaunchQueue::isShort(double pixelSamples) const {

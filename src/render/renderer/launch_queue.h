@@ -43,9 +43,9 @@ class LaunchQueue {
   // firstLaunchSeconds and deviceSeconds of `statistics`, which must outlive the queue.
   LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics);
 
-  // Returns the number of rows of the next launch, so that `samples` samples of each pixel take about launchSeconds.
-  // The image does not depend on it.
-  std::uint32_t rows(double width, std::uint32_t rowsLeft, std::uint32_t samples) const;
+  // Returns the number of rows of the next launch, which begins at `row` of `height`, so that `samples` samples of each
+  // pixel take about launchSeconds. The launch ends at a multiple of kLaunchRows, unless it is shorter than that.
+  std::uint32_t rows(double width, std::uint32_t row, std::uint32_t height, std::uint32_t samples) const;
   // Returns whether so many samples are known to take at most about twice launchSeconds.
   bool isShort(double pixelSamples) const;
 

@@ -169,7 +169,7 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
   const Stopwatch clock;
   const Target target = wholeRegion();
   for (std::uint32_t row = 0; row < target.height;) {
-    const std::uint32_t rows = queue_.rows(target.width, target.height - row, 1);
+    const std::uint32_t rows = queue_.rows(target.width, row, target.height, 1);
     const Record end = [&](gpu::Commands& commands) { film_.endBatch(commands, {index, index + 1}); };
     launch(target, row, rows, {index, index + 1}, row == 0 ? recordBegin() : Record(),
            row + rows == target.height ? end : Record());
@@ -210,7 +210,7 @@ bool Renderer::renderStrips(const Target& target, SampleRange samples, const Rec
                             const BatchProgress& progress) {
   const std::uint32_t count = samples.end - samples.begin;
   for (std::uint32_t row = 0; row < target.height;) {
-    const std::uint32_t rows = queue_.rows(target.width, target.height - row, count);
+    const std::uint32_t rows = queue_.rows(target.width, row, target.height, count);
     // If even one row takes too long, or while the rate is unknown, samples are launched one by one: the sums and their
     // order are the same, and a shader that is slow or never ends is detected soon.
     const std::uint32_t step = queue_.isShort(static_cast<double>(rows) * target.width * count) ? count : 1;
@@ -261,8 +261,8 @@ Renderer::Target Renderer::tileTarget(std::span<const shared::FilmTile> tiles) {
   const auto bytes = std::as_bytes(tiles);
   tileBuffer_ = gpu::Buffer(context_, {.size = bytes.size(), .memory = gpu::Memory::upload, .name = "film tiles"});
   std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
-  return {
-      shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer_.address()};
+  const auto count = static_cast<std::uint32_t>(tiles.size());
+  return {shared::kTileSize, count * shared::kTileSize, {0, 0}, tileBuffer_.address()};
 }
 
 bool Renderer::renderPart(const Part& part, const BatchProgress& progress) {

@@ -115,7 +115,7 @@ class Renderer {
   const program::Program& program() const { return runnable_.description; }
 
  private:
-  // The area of a launch: rows of the region, or film tiles with one row of invocations each.
+  // The area of a launch: rows of the region, or film tiles, one below another.
   struct Target {
     std::uint32_t width = 0;   // invocations per row
     std::uint32_t height = 0;  // rows

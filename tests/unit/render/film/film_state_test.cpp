@@ -203,5 +203,20 @@ TEST(FilmState, DividesAllPixelsAmongCells) {
 
 TEST(FilmState, HasNoImageOfCoverage) { EXPECT_THROW(planeImage(Maker(1).film({0}), 2), UsageError); }
 
+TEST(FilmState, LaunchesBeginAtMultiplesOfRows) {
+  for (const std::uint32_t height : {1u, 7u, 8u, 45u, 64u})
+    for (std::uint32_t rows = 1; rows <= height + 9; ++rows)
+      for (std::uint32_t row = 0; row < height;) {
+        const std::uint32_t end = launchEnd(row, rows, height);
+        ASSERT_GT(end, row);
+        ASSERT_LE(end - row, rows);
+        ASSERT_LE(end, height);
+        const bool isAligned = end % kLaunchRows == 0 || end == height;
+        ASSERT_TRUE(isAligned || rows < kLaunchRows) << row << ' ' << rows;
+        ASSERT_TRUE(end == height || row + rows < height) << row << ' ' << rows;
+        row = end;
+      }
+}
+
 }  // namespace
 }  // namespace quintet::render
