@@ -12,9 +12,10 @@ FilmTile launchTile() { return TileArray(launch.tiles).at[(gl_LaunchIDEXT.y + la
 
 // The pixel of a column in this invocation's row of the launch.
 uvec2 launchPixelIn(uint column) {
-  if (launch.tiles == 0ul) return uvec2(column, gl_LaunchIDEXT.y) + launch.offset;
+  const uvec2 position = uvec2(column, gl_LaunchIDEXT.y) + launch.offset;
+  if (launch.tiles == 0ul) return position;
   const FilmTile tile = launchTile();
-  return frame.filmOffset + uvec2(tile.x + column, tile.y + (gl_LaunchIDEXT.y + launch.offset.y) % kTileSize);
+  return frame.filmOffset + uvec2(tile.x + position.x, tile.y + position.y % kTileSize);
 }
 
 // The pixel of this invocation.

@@ -9,7 +9,8 @@
 # (1920x1080), REPEAT (3: the fastest run counts), DEVICES (a list to take the devices from, such as 0,0 on a machine with one),
 # MORE (further options of render, such as --adaptive).
 #
-# Columns: wall clock of the process; of rendering, until the last sample; speedups relative to the first count; hash of the pixels.
+# Columns: wall clock of the process; of rendering, until the last sample; speedups relative to the first count; whether all
+# pixels have the bits of the first count.
 # The status is 1 if pixels differ.
 set -euo pipefail
 bin=${1:?usage: tests/bench/devices.sh BIN [FOLDER] [COUNTS]}

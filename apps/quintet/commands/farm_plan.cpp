@@ -141,10 +141,12 @@ void checkFolder(const std::filesystem::path& folder) {
 
 // Only frames can have other limits than a number of samples.
 void checkLimits(const job::RenderLimits& limits) {
-  const char* option = limits.adaptive ? "--adaptive" : limits.error ? "--until-error" : limits.seconds ? "--time" : "";
-  if (*option)
-    throw UsageError(fmt::format(
-        "{}: the parts of an image need a fixed number of samples, the same for all pixels; use --spp alone", option));
+  if (!limits.adaptive && !limits.error && !limits.seconds) return;
+  throw UsageError(
+      fmt::format("{}: the parts of an image have a fixed number of samples, the same for all pixels; use --spp alone",
+                  limits.adaptive ? "--adaptive"
+                  : limits.error  ? "--until-error"
+                                  : "--time"));
 }
 
 std::vector<farm::Part> partsOf(const FarmPlanOptions& options, bool frames) {

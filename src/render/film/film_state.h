@@ -17,9 +17,9 @@ namespace quintet::render {
 
 using shared::kBatchSamples;
 
-// However a film is divided into launches, each begins at a multiple of so many rows, unless a launch is shorter than that.
-// Groups of 32 invocations (8 x 4 on NVIDIA) then have the same pixels. On NVIDIA, the pixels of a group decide which
-// triangle a ray hits if it meets the common edge of two (docs/design/quirks.md).
+// Launches begin at multiples of this number of rows, unless they are shorter. However a film is divided, groups of 32
+// invocations (8 x 4 pixels on NVIDIA) then have the same pixels, which there decide what a ray hits that meets the
+// common edge of two triangles (docs/design/quirks.md).
 inline constexpr std::uint32_t kLaunchRows = 8;
 // Returns the end of a launch that begins at `row` and has at most `rows` of the rows up to `height`.
 std::uint32_t launchEnd(std::uint32_t row, std::uint32_t rows, std::uint32_t height);

@@ -44,7 +44,7 @@ class LaunchQueue {
   LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics);
 
   // Returns the number of rows of the next launch, which begins at `row` of `height`, so that `samples` samples of each
-  // pixel take about launchSeconds. The launch ends at a multiple of kLaunchRows, unless it is shorter than that.
+  // pixel take about launchSeconds. The launch ends at `height` or at a multiple of kLaunchRows, unless it is shorter than that.
   std::uint32_t rows(double width, std::uint32_t row, std::uint32_t height, std::uint32_t samples) const;
   // Returns whether so many samples are known to take at most about twice launchSeconds.
   bool isShort(double pixelSamples) const;

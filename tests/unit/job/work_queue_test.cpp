@@ -68,12 +68,11 @@ TEST(WorkQueue, GivesOutEachRowOnce) {
   }
 }
 
-// On NVIDIA, rays depend on the pixels that are in a group with theirs (docs/design/quirks.md).
+// On NVIDIA, what a ray hits can depend on the other pixels of its group (docs/design/quirks.md).
 TEST(WorkQueue, CutsAtMultiplesOfRows) {
   WorkQueue queue(batches(9), {});
-  std::size_t pieces = 0;
   for (const double speed : {0.0, 3e5, 1e6, 2.1e6, 7e5}) {
-    for (int i = 0; i < 5; ++i, ++pieces) {
+    for (int i = 0; i < 5; ++i) {
       const std::optional<WorkPiece> piece = queue.take(speed, 5e6, true);
       ASSERT_TRUE(piece);
       EXPECT_EQ(piece->first % render::kLaunchRows, 0u);
