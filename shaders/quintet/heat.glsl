@@ -52,9 +52,9 @@ uvec2 heatStart_ = uvec2(0u);
 void heatOutput_(uint slot, float value) {
   if (frame.outputs[slot] == 0ul) return;
 #ifdef QUINTET_HEAT_STORES
-  OutputArray(frame.outputs[slot]).at[heatIndex_()] = vec4(vec3(value), 1.0);
+  OutputArray(frame.outputs[slot]).at[outputIndex(launchPixel())] = vec4(vec3(value), 1.0);
 #else
-  OutputArray(frame.outputs[slot]).at[heatIndex_()] += vec4(vec3(value), 1.0);
+  OutputArray(frame.outputs[slot]).at[outputIndex(launchPixel())] += vec4(vec3(value), 1.0);
 #endif
 }
 

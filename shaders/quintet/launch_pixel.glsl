@@ -18,6 +18,13 @@ uvec2 launchPixelIn(uint column) {
   return frame.filmOffset + uvec2(tile.x + position.x, tile.y + position.y % kTileSize);
 }
 
+// The index of a pixel of this invocation's row in the arrays of the outputs (Frame::outputs).
+uint outputIndex(uvec2 pixel) {
+  const uvec2 film = pixel - frame.filmOffset;
+  if (launch.tiles == 0ul) return film.y * frame.filmWidth + film.x;
+  return (gl_LaunchIDEXT.y + launch.offset.y) * kTileSize + film.x % kTileSize;
+}
+
 // The pixel of this invocation.
 uvec2 launchPixel() { return launchPixelIn(gl_LaunchIDEXT.x); }
 

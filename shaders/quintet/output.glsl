@@ -8,8 +8,9 @@
 #include "frame.glsl"
 #include "launch_pixel.glsl"
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uint at[]; };  // Frame::statistics
 
+// The index of a pixel in the arrays of the film; for outputs, see outputIndex().
 uint pixelIndex(uvec2 pixel) {
   const uvec2 film = pixel - frame.filmOffset;
   return film.y * frame.filmWidth + film.x;
@@ -23,19 +24,19 @@ bool holdsPixel(uint slot, uvec2 pixel) {
 
 // `slot`: kOutput_… of the generated program constants.
 vec4 loadOutput(uint slot, uvec2 pixel) {
-  return holdsPixel(slot, pixel) ? OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] : vec4(0.0);
+  return holdsPixel(slot, pixel) ? OutputArray(frame.outputs[slot]).at[outputIndex(pixel)] : vec4(0.0);
 }
 void storeOutput(uint slot, uvec2 pixel, vec4 sum) {
-  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum;
+  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[outputIndex(pixel)] = sum;
 }
 void addOutput(uint slot, uvec2 pixel, vec4 sample_) {
-  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] += sample_;
+  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[outputIndex(pixel)] += sample_;
 }
 // For an output that counts ids (pixel = "coverage"): stores the id that sample `index` of the pixel has hit; 0: no
 // hit.
 void storeCoverage(uint slot, uvec2 pixel, uint index, uint id) {
   if (holdsPixel(slot, pixel))
-    OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
+    OutputArray(frame.outputs[slot]).at[outputIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
 }
 
 #ifdef QUINTET_INSTRUMENT
@@ -81,11 +82,15 @@ vec4 loadPrevious(uint slot, uvec2 pixel) {
 // Programs discard and count non-finite samples; `quintet render` reports their number.
 bool isFinite(vec4 value) { return !(any(isnan(value)) || any(isinf(value))); }
 
-// Adds to this pixel's counters: rays traced, samples discarded.
+// Adds to this pixel's counters: rays traced, samples discarded. Atomic, because several batches of a pixel can run at the same
+// time.
 void countRays(uvec2 pixel, uint rays, uint dropped) {
   const uvec2 film = pixel - frame.filmOffset;
-  if (frame.statistics != 0ul && film.x < frame.filmWidth && film.y < frame.filmHeight)
-    StatisticsArray(frame.statistics).at[pixelIndex(pixel)] += uvec2(rays, dropped);
+  if (frame.statistics == 0ul || film.x >= frame.filmWidth || film.y >= frame.filmHeight) return;
+  StatisticsArray statistics = StatisticsArray(frame.statistics);
+  const uint first = 2u * pixelIndex(pixel);
+  atomicAdd(statistics.at[first], rays);
+  if (dropped > 0u) atomicAdd(statistics.at[first + 1u], dropped);
 }
 
 #endif

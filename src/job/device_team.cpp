@@ -338,11 +338,9 @@ bool DeviceTeam::renderCells(const std::vector<std::uint32_t>& limits, double se
   render::SampleCounts after = counts_;
   double work = 0;
   do {
-    render::AdaptiveBatch next = render::nextAdaptiveBatch(region(), after, limits);
+    render::AdaptiveBatches next = render::nextAdaptiveBatches(region(), after, limits, first().needsOneBatch());
     if (next.tiles.empty()) break;
-    const std::uint32_t begin = next.batch * render::kBatchSamples;
-    auto batch =
-        std::make_shared<WorkBatch>(WorkBatch::ofTiles(std::move(next.tiles), {begin, begin + render::kBatchSamples}));
+    auto batch = std::make_shared<WorkBatch>(WorkBatch::ofTiles(std::move(next.tiles)));
     work += batch->unitSamples * batch->units;
     batches.push_back(std::move(batch));
     after.cellBatches = std::move(next.counts);

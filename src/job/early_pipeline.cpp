@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "program/load.h"
-#include "quintet/shared/frame.h"
+#include "quintet/shared/pass.h"
 #include "spirv/module.h"
 
 namespace quintet::job {
@@ -42,7 +42,6 @@ std::unique_ptr<EarlyPipeline> EarlyPipeline::make(gpu::Context& context, const 
 
 EarlyPipeline::EarlyPipeline(gpu::Context& context, const program::Program& program,
                              const program::CompiledProgram& compiled, const gpu::PipelineCache& cache)
-    : set_(context, 1, static_cast<std::uint32_t>(sizeof(shared::Launch))),
-      linked_(context, set_, program, compiled, 1, &cache) {}
+    : set_(context, 1, shared::kPushConstantBytes), linked_(context, set_, program, compiled, 1, &cache) {}
 
 }  // namespace quintet::job

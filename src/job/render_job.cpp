@@ -41,11 +41,13 @@ constexpr double kPreviewSeconds = 1.0;  // between previews of frames
 constexpr double kEstimateSeconds = 2.0;
 constexpr double kEstimateShare = 50.0;
 
-void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::uint64_t filmBytesPerPixel) {
+void checkMemory(const gpu::DeviceInfo& device, uvec2 size, const program::Program& program,
+                 const std::vector<std::string>& outputs) {
   // Largest buffer of a film: sums of four channels.
   constexpr std::uint64_t kSumBytes = 4 * sizeof(shared::FixedSum);
   const std::uint64_t pixels = std::uint64_t{size.x} * size.y;
-  const std::uint64_t needed = pixels * filmBytesPerPixel + (device.software ? pixels * kImageBytes : 0);
+  const std::uint64_t needed =
+      render::Film::bytesFor({0, 0, size.x, size.y}, program, outputs) + (device.software ? pixels * kImageBytes : 0);
   const std::uint64_t available = device.memoryBytes - device.memoryBytes / 16;
   const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kSumBytes > device.maxBufferBytes;
   if (needed <= available && !tooLargeBuffer) return;
@@ -135,9 +137,9 @@ void RenderJob::prepare(Observer& observer) {
     scene_ = nullptr;
     loading.emplace(job_.scene, request);
   }
-  const std::uint64_t filmBytes = render::Film::bytesPerPixel(job_.program, request.outputs);
   const auto checkMemoryFor = [&](uvec2 size) {
-    for (std::size_t i = 0; i < deviceCount_; ++i) checkMemory(engine_.context(i).info(), size, filmBytes);
+    for (std::size_t i = 0; i < deviceCount_; ++i)
+      checkMemory(engine_.context(i).info(), size, job_.program, request.outputs);
   };
   checkMemoryFor(renderedSize(request, request.size));
 
@@ -387,8 +389,8 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer, Pend
 }
 
 void RenderJob::setSize(uvec2 size) {
-  const std::uint64_t filmBytes = render::Film::bytesPerPixel(job_.program, job_.request.outputs);
-  for (std::size_t i = 0; i < deviceCount_; ++i) checkMemory(engine_.context(i).info(), size, filmBytes);
+  for (std::size_t i = 0; i < deviceCount_; ++i)
+    checkMemory(engine_.context(i).info(), size, job_.program, job_.request.outputs);
   if (team_) changeRenderers([&](render::Renderer& renderer) { renderer.setSize(size); });
   job_.request.size = size;
   job_.request.region = {};

@@ -21,12 +21,12 @@ WorkBatch WorkBatch::ofRows(const render::Region& region, render::SampleRange sa
   return {samples, {}, region.height, static_cast<double>(region.width) * (samples.end - samples.begin)};
 }
 
-WorkBatch WorkBatch::ofTiles(std::vector<shared::FilmTile> tiles, render::SampleRange samples) {
+WorkBatch WorkBatch::ofTiles(std::vector<shared::FilmTile> tiles) {
   double cells = 0;
   for (const shared::FilmTile& tile : tiles) cells += tile.drawn[0] + tile.drawn[1];
   const double pixels = 0.5 * shared::kTileSize * shared::kTileSize * cells;
   const auto count = static_cast<std::uint32_t>(tiles.size());
-  return {samples, std::move(tiles), count, pixels * (samples.end - samples.begin) / std::max(1u, count)};
+  return {{}, std::move(tiles), count, pixels * render::kBatchSamples / std::max(1u, count)};
 }
 
 void SpeedMeter::add(double pixelSamples, double seconds) {

@@ -15,15 +15,15 @@
 
 namespace quintet::job {
 
-// A batch of all pixels of a film, or of some of its tiles.
+// A batch of all pixels of a film, or batches of some of its tiles.
 struct WorkBatch {
-  render::SampleRange samples;
+  render::SampleRange samples;          // of rows
   std::vector<shared::FilmTile> tiles;  // empty: all rows
   std::uint32_t units = 0;              // rows of the film, or tiles
   double unitSamples = 0;               // pixel samples per unit, on average
 
   static WorkBatch ofRows(const render::Region& region, render::SampleRange samples);
-  static WorkBatch ofTiles(std::vector<shared::FilmTile> tiles, render::SampleRange samples);
+  static WorkBatch ofTiles(std::vector<shared::FilmTile> tiles);
 };
 
 // Units [first, first + count) of a batch.

@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "base/error.h"
-#include "quintet/shared/frame.h"
 #include "quintet/shared/pass.h"
 #include "shader/library.h"
 
@@ -22,7 +21,7 @@ std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu:
 
 void dispatchPass(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants,
                   std::uint32_t count) {
-  assert(constants.size() <= sizeof(shared::Launch));
+  assert(constants.size() <= shared::kPushConstantBytes);
   const std::uint32_t groups = (count + shared::kPassGroupSize - 1) / shared::kPassGroupSize;
   const std::uint32_t columns = std::min(groups, shared::kPassColumns);
   pass.dispatch(commands, constants, columns, (groups + columns - 1) / columns);

@@ -18,7 +18,7 @@ std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu:
                                                const shader::Compiler& compiler, const std::string& name);
 
 // Records a dispatch with invocations for `count` elements, in workgroups of shared::kPassGroupSize. `constants`: at most
-// sizeof(shared::Launch) bytes.
+// shared::kPushConstantBytes.
 void dispatchPass(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants,
                   std::uint32_t count);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// total += batch, squares += batch² / samples. A compute shader with one invocation per pixel; see
+// total += value, squares += value² / samples. A compute shader with one invocation per value of the batch; see
 // src/render/film/film.h.
 #extension GL_EXT_scalar_block_layout : require
+#include <quintet/passes/batch_pixel.glsl>
 #include <quintet/passes/fixed_sum.glsl>
 #include <quintet/passes/pass_index.glsl>
 
@@ -16,14 +17,15 @@ void add(Address sums, uint index, float value) {
 
 void main() {
   const uint i = passIndex();
-  if (i >= pass.count) return;
-  const vec4 batch = PixelArray(pass.batch).at[i];
-  if (batch == vec4(0.0)) return;  // also pixels that adaptive sampling skips
+  uint pixel;
+  if (!findBatchPixel(pass.batch, i, pixel)) return;
+  const vec4 value = PixelArray(pass.values).at[i];
+  if (value == vec4(0.0)) return;
   for (uint c = 0u; c < 4u; ++c) {
-    add(pass.total, 4u * i + c, batch[c]);
+    add(pass.total, 4u * pixel + c, value[c]);
     if (pass.squares == 0ul) continue;
     // A clamped square would understate the variance: mark it as not finite.
-    const float square = batch[c] * batch[c] * pass.inverseSamples;
-    add(pass.squares, 4u * i + c, square < kFixedLimit ? square : uintBitsToFloat(0x7F800000u));
+    const float square = value[c] * value[c] * pass.batch.inverseSamples;
+    add(pass.squares, 4u * pixel + c, square < kFixedLimit ? square : uintBitsToFloat(0x7F800000u));
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts the ids of a batch's samples. A compute shader with one invocation per pixel.
+// Counts the ids of a batch's samples. A compute shader with one invocation per value of the batch.
 #extension GL_EXT_scalar_block_layout : require
+#include <quintet/passes/batch_pixel.glsl>
 #include <quintet/passes/pass_index.glsl>
-#include <quintet/shared/film.h>
 
 layout(local_size_x = kPassGroupSize) in;
 layout(push_constant, scalar) uniform FilmCoverageBlock { FilmCoverage pass; };
@@ -25,9 +25,10 @@ void count(SlotArray slots, uint first, uint id) {
 
 void main() {
   const uint i = passIndex();
-  if (i >= pass.count) return;
+  uint pixel;
+  if (!findBatchPixel(pass.batch, i, pixel)) return;
   for (uint s = 0u; s < kBatchSamples; ++s) {
-    const uint id = IdArray(pass.batch).at[kBatchSamples * i + s];
-    if (id != 0u) count(SlotArray(pass.total), kCoverageSlots * i, id);
+    const uint id = IdArray(pass.values).at[kBatchSamples * i + s];
+    if (id != 0u) count(SlotArray(pass.total), kCoverageSlots * pixel, id);
   }
 }

@@ -16,15 +16,24 @@ struct FixedSum {
 QT_SHARED_SIZE(FixedSum, 16);
 QT_CONSTANT kNotFiniteWord = 0x80000000u;  // word[3] of that value
 
-// Push constants of the pass that adds the sums of a batch to the totals.
-struct FilmAdd {
-  Address total;         // FixedSum[4 · count]: += batch
-  Address squares;       // FixedSum[4 · count]: += batch² · inverseSamples; 0: not kept
-  Address batch;         // vec4[count]
-  uint count;            // pixels
+// A batch of pixels, or of tiles with kTileSize² values for each tile; see quintet/passes/batch_pixel.glsl.
+struct FilmBatch {
+  Address tiles;         // FilmTile[count / kTileSize²], no tile twice; 0: value i belongs to pixel i
+  uint count;            // values
+  uint width;            // of the film in pixels, for tiles
+  uint height;
   float inverseSamples;  // 1 / samples of the batch
 };
-QT_SHARED_SIZE(FilmAdd, 32);
+QT_SHARED_SIZE(FilmBatch, 24);
+
+// Push constants of the pass that adds the sums of a batch to the totals.
+struct FilmAdd {
+  Address total;    // FixedSum[4 · pixels]: += value
+  Address squares;  // FixedSum[4 · pixels]: += value² · inverseSamples; 0: not kept
+  Address values;   // vec4[batch.count]
+  FilmBatch batch;
+};
+QT_SHARED_SIZE(FilmAdd, 48);
 
 // Push constants of the pass that divides the totals by the number of samples.
 struct FilmMean {
@@ -45,12 +54,11 @@ QT_CONSTANT kCoverageSlots = 12u;  // per pixel, sorted by id; if there are more
 
 // Push constants of the pass that counts the ids of a batch.
 struct FilmCoverage {
-  Address total;     // CoverageSlot[kCoverageSlots · count]
-  Address batch;     // uint[kBatchSamples · count]; 0: no hit
-  uint count;        // pixels
-  uint padding;
+  Address total;    // CoverageSlot[kCoverageSlots · pixels]
+  Address values;   // uint[kBatchSamples · batch.count]; 0: no hit
+  FilmBatch batch;
 };
-QT_SHARED_SIZE(FilmCoverage, 24);
+QT_SHARED_SIZE(FilmCoverage, 40);
 
 // Push constants of the pass that replaces the total by a frame, if the program accumulates.
 struct FilmFrame {

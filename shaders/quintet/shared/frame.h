@@ -114,8 +114,8 @@ struct Frame {
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
   Address rayRecords;   // RayKinds, then RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
-  // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule defines
-  // (program::OutputPixel); 0: an optional output that was not requested.
+  // vec4[]: sums of this batch, or as the output's rule defines (program::OutputPixel); 0: an optional output that was not
+  // requested. The pixels of the film, row by row from the top; if the launch covers tiles, kTileSize² pixels for each tile.
   Address outputs[kMaxOutputs];
   Address previousOutputs[kMaxOutputs];  // vec4[…]: of the previous frame, if the program accumulates; 0: none
   EnvironmentData environment;
@@ -149,12 +149,14 @@ QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 48 + 16 + 72);
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.
 QT_CONSTANT kTileSize = 32u;
+// A batch of a tile. A tile can have several batches in one list, for which the program runs at the same time.
 struct FilmTile {
   uint x;            // position of the first pixel, relative to the film
   uint y;
   uint drawn[2];     // 1: the cell is sampled in this batch
+  uint batch;        // index of the batch
 };
-QT_SHARED_SIZE(FilmTile, 16);
+QT_SHARED_SIZE(FilmTile, 20);
 
 // Push constants of every ray tracing program. No member has the name of a macro (`frame`, `parameters`): glslang would
 // expand it again in an argument of a macro.

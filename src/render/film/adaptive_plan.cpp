@@ -110,22 +110,33 @@ std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGo
   return limits;
 }
 
-AdaptiveBatch nextAdaptiveBatch(const Region& region, const SampleCounts& counts,
-                                const std::vector<std::uint32_t>& limits) {
-  AdaptiveBatch next;
+AdaptiveBatches nextAdaptiveBatches(const Region& region, const SampleCounts& counts,
+                                    const std::vector<std::uint32_t>& limits, bool one) {
+  AdaptiveBatches next;
   next.counts = counts.cellBatches;
   if (next.counts.empty()) next.counts.assign(limits.size(), static_cast<std::uint32_t>(counts.batches()));
-  next.batch = std::numeric_limits<std::uint32_t>::max();
-  for (std::size_t c = 0; c < limits.size(); ++c)
-    if (next.counts[c] < limits[c]) next.batch = std::min(next.batch, next.counts[c]);
-  const std::uint32_t columns = tileColumns(region.width);
-  for (std::uint32_t t = 0; t < limits.size() / 2; ++t) {
-    shared::FilmTile tile{t % columns * shared::kTileSize, t / columns * shared::kTileSize, {}};
-    for (std::uint32_t c = 0; c < 2; ++c) {
-      tile.drawn[c] = next.counts[2 * t + c] == next.batch && next.batch < limits[2 * t + c] ? 1 : 0;
-      next.counts[2 * t + c] += tile.drawn[c];
+  const auto remains = [&](std::size_t cell) { return next.counts[cell] < limits[cell]; };
+  const auto isComplete = [&](std::uint32_t tile) { return !remains(2 * tile) && !remains(2 * tile + 1); };
+  std::vector<std::uint32_t> pending;
+  for (std::uint32_t tile = 0; tile < limits.size() / 2; ++tile)
+    if (!isComplete(tile)) pending.push_back(tile);
+  const std::uint32_t columns = tileColumns(region.width), space = tileCount(region);
+  while (!pending.empty() && next.tiles.size() < space) {
+    std::uint32_t batch = std::numeric_limits<std::uint32_t>::max();
+    for (const std::uint32_t tile : pending)
+      for (const std::uint32_t cell : {2 * tile, 2 * tile + 1})
+        if (remains(cell)) batch = std::min(batch, next.counts[cell]);
+    for (const std::uint32_t t : pending) {
+      if (next.tiles.size() == space) break;
+      shared::FilmTile tile{t % columns * shared::kTileSize, t / columns * shared::kTileSize, {}, batch};
+      for (std::uint32_t c = 0; c < 2; ++c) {
+        tile.drawn[c] = next.counts[2 * t + c] == batch && remains(2 * t + c) ? 1 : 0;
+        next.counts[2 * t + c] += tile.drawn[c];
+      }
+      if (tile.drawn[0] + tile.drawn[1] > 0) next.tiles.push_back(tile);
     }
-    if (tile.drawn[0] + tile.drawn[1] > 0) next.tiles.push_back(tile);
+    if (one) break;
+    std::erase_if(pending, isComplete);
   }
   return next;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adaptive sampling: how many batches each cell of a film gets, and which cells the next batch renders.
+// Adaptive sampling: how many batches each cell of a film gets, and in which order.
 #ifndef QUINTET_RENDER_FILM_ADAPTIVE_PLAN_H
 #define QUINTET_RENDER_FILM_ADAPTIVE_PLAN_H
 
@@ -28,16 +28,17 @@ struct CellGoal {
 // earlier ones. docs/design/path-tracer.md, "How many samples".
 std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal);
 
-struct AdaptiveBatch {
-  std::uint32_t batch = 0;  // index of the batch, the same for all cells that are rendered
-  // Tiles with at least one rendered cell. Empty if all cells have reached their limits.
+struct AdaptiveBatches {
+  // Tiles with at least one sampled cell, sorted by their batch. Empty if all cells have reached their limits.
   std::vector<shared::FilmTile> tiles;
-  std::vector<std::uint32_t> counts;  // SampleCounts::cellBatches after this batch
+  std::vector<std::uint32_t> counts;  // SampleCounts::cellBatches after these batches
 };
 
-// Selects the cells with the fewest batches among those that have fewer batches than `limits` demands.
-AdaptiveBatch nextAdaptiveBatch(const Region& region, const SampleCounts& counts,
-                                const std::vector<std::uint32_t>& limits);
+// Selects batches of the cells that have fewer than `limits` demands, those with the lowest indices first, for as many tiles as the
+// film has. The last cells with many batches then do not run alone, which would use a small part of
+// a GPU. `one`: only batches with the same index.
+AdaptiveBatches nextAdaptiveBatches(const Region& region, const SampleCounts& counts,
+                                    const std::vector<std::uint32_t>& limits, bool one = false);
 
 }  // namespace quintet::render
 #endif

@@ -15,6 +15,7 @@ namespace quintet::render {
 namespace {
 
 static_assert(shared::kMaxOutputs == program::kMaxOutputs);
+constexpr std::uint64_t kTilePixels = std::uint64_t{shared::kTileSize} * shared::kTileSize;
 
 using program::Accumulation;
 using program::OutputPixel;
@@ -29,6 +30,12 @@ std::uint64_t totalBytes(OutputPixel pixel, Accumulation accumulation) {
                                     : shared::kCoverageSlots * sizeof(shared::CoverageSlot);
 }
 
+// The values of a batch: one per pixel, and enough for all tiles, which can extend beyond the film.
+std::uint64_t batchValues(const Region& region, bool adaptive) {
+  const std::uint64_t pixels = std::uint64_t{region.width} * region.height;
+  return adaptive ? std::max(pixels, tileCount(region) * kTilePixels) : pixels;
+}
+
 bool storesSquares(std::size_t output, Accumulation accumulation) {
   return output == 0 && accumulation == Accumulation::film;
 }
@@ -40,6 +47,7 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     : context_(context),
       region_(region),
       accumulation_(program.accumulation),
+      adaptive_(program.adaptive),
       check_(makePass(context, set, compiler, "film_check")) {
   const std::vector<std::string> names = program::outputNames(program);
   for (const std::string& name : wanted)
@@ -66,12 +74,13 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
 }
 
 void Film::resize(Region region) {
+  const std::uint64_t pixels = std::uint64_t{region.width} * region.height;
+  const std::uint64_t values = batchValues(region, adaptive_);
+  const auto makeBuffer = [&](std::uint64_t size, const std::string& name) {
+    return gpu::Buffer(context_, {.size = size, .name = name, .purpose = gpu::Purpose::film});
+  };
   const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
-    gpu::BufferOptions options;
-    options.size = VkDeviceSize{region.width} * region.height * bytesPerPixel;
-    options.name = name;
-    options.purpose = gpu::Purpose::film;
-    return gpu::Buffer(context_, options);
+    return makeBuffer(pixels * bytesPerPixel, name);
   };
   std::vector<Output> outputs;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -79,7 +88,7 @@ void Film::resize(Region region) {
     entry.facts = outputs_[i].facts;
     entry.stored = outputs_[i].stored;
     if (!entry.stored) continue;
-    entry.batch = buffer(sizeof(vec4), "film batch " + entry.facts.name);
+    entry.batch = makeBuffer(values * sizeof(vec4), "film batch " + entry.facts.name);
     entry.total = buffer(totalBytes(entry.facts.pixel, accumulation_), "film total " + entry.facts.name);
     if (storesSquares(i, accumulation_))
       entry.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + entry.facts.name);
@@ -114,14 +123,18 @@ std::uint64_t Film::bytes() const {
   return sum;
 }
 
-std::uint64_t Film::bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted) {
-  std::uint64_t sum = sizeof(uvec2) + (program.accumulation == Accumulation::program ? sizeof(std::uint32_t) : 0);
+std::uint64_t Film::bytesFor(const Region& region, const program::Program& program,
+                             const std::vector<std::string>& wanted) {
+  const std::uint64_t values = batchValues(region, program.adaptive);
+  std::uint64_t perPixel = sizeof(uvec2) + (program.accumulation == Accumulation::program ? sizeof(std::uint32_t) : 0);
+  std::uint64_t sum = 0;
   for (std::size_t i = 0; i < program.outputs.size(); ++i) {
     if (!isStored(program.outputs[i], wanted)) continue;
-    sum += sizeof(vec4) + totalBytes(program.outputs[i].pixel, program.accumulation);
-    if (storesSquares(i, program.accumulation)) sum += 4 * sizeof(shared::FixedSum);
+    sum += values * sizeof(vec4);
+    perPixel += totalBytes(program.outputs[i].pixel, program.accumulation);
+    if (storesSquares(i, program.accumulation)) perPixel += 4 * sizeof(shared::FixedSum);
   }
-  return sum;
+  return sum + perPixel * region.width * region.height;
 }
 
 void Film::describe(shared::Frame& frame) const {
@@ -136,51 +149,78 @@ void Film::describe(shared::Frame& frame) const {
   }
 }
 
-void Film::beginBatch(gpu::Commands& commands) {
-  commands.barrier(gpu::Stage::all, gpu::Stage::transfer);
-  for (const Output& output : outputs_)
-    if (output.total) commands.fill(output.batch, 0);
-  commands.barrier(gpu::Stage::transfer, gpu::Stage::rayTracing);
-}
+void Film::beginBatch(gpu::Commands& commands) { beginRows(commands, 0, region_.height); }
 
 void Film::endBatch(gpu::Commands& commands, SampleRange samples) {
-  addBatch(commands, samples, 0, region_.height);
+  endRows(commands, samples, 0, region_.height);
   if (accumulation_ == Accumulation::film) counts_.add(samples);
 }
 
-void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples,
-                            const std::vector<std::uint32_t>& cellBatches) {
-  assert(accumulation_ == Accumulation::film && cellBatches.size() == 2 * std::size_t{tileCount(region_)});
-  addBatch(commands, samples, 0, region_.height);
-  counts_.cellBatches = cellBatches;
+void Film::beginRows(gpu::Commands& commands, std::uint32_t first, std::uint32_t count) {
+  clearValues(commands, std::uint64_t{first} * region_.width, std::uint64_t{count} * region_.width);
 }
 
-void Film::endPart(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows) {
-  assert(accumulation_ == Accumulation::film && firstRow + rows <= region_.height);
-  addBatch(commands, samples, firstRow, rows);
-}
-
-void Film::addBatch(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows) {
+void Film::endRows(gpu::Commands& commands, SampleRange samples, std::uint32_t first, std::uint32_t count) {
+  assert(first + count <= region_.height && (accumulation_ == Accumulation::film || count == region_.height));
   commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
-  const std::uint32_t pixels = region_.width * region_.height;
+  const std::uint64_t pixel = std::uint64_t{first} * region_.width;
+  addPart(commands, samples, {pixel, pixel, count * region_.width, 0});
+}
+
+void Film::beginTiles(gpu::Commands& commands, std::size_t count) {
+  assert(adaptive_ && count <= tileCount(region_));
+  clearValues(commands, 0, count * kTilePixels);
+}
+
+void Film::endTiles(gpu::Commands& commands, shared::Address address, std::span<const shared::FilmTile> tiles) {
+  assert(accumulation_ == Accumulation::film);
+  commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
+  // A tile can have several batches, which are added one after another.
+  for (std::size_t first = 0; first < tiles.size();) {
+    const std::size_t end = endOfBatch(tiles, first);
+    const std::uint32_t sample = tiles[first].batch * kBatchSamples;
+    assert(sample > 0);
+    const auto count = static_cast<std::uint32_t>((end - first) * kTilePixels);
+    addPart(commands, {sample, sample + kBatchSamples},
+            {first * kTilePixels, 0, count, address + first * sizeof(shared::FilmTile)});
+    first = end;
+  }
+}
+
+void Film::setCellBatches(std::vector<std::uint32_t> batches) {
+  assert(batches.size() == 2 * std::size_t{tileCount(region_)});
+  counts_.cellBatches = std::move(batches);
+}
+
+void Film::clearValues(gpu::Commands& commands, std::uint64_t first, std::uint64_t count) {
+  commands.barrier(gpu::Stage::all, gpu::Stage::transfer);
+  for (const Output& output : outputs_)
+    if (output.total) commands.fill(output.batch, 0, first * sizeof(vec4), count * sizeof(vec4));
+  commands.barrier(gpu::Stage::transfer, gpu::Stage::rayTracing);
+}
+
+void Film::addPart(gpu::Commands& commands, SampleRange samples, const Part& part) {
+  const shared::FilmBatch batch{part.tiles, part.count, region_.width, region_.height,
+                                1.0f / static_cast<float>(samples.end - samples.begin)};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Output& output = outputs_[i];
     if (!output.total) continue;
+    const shared::Address values = output.batch.address() + part.value * sizeof(vec4);
+    const shared::Address total = output.total.address() + part.pixel * totalBytes(output.facts.pixel, accumulation_);
     if (accumulation_ == Accumulation::program) {
-      const shared::FilmFrame pass{output.total.address(), output.batch.address(), marks_.address(), pixels, 1u << i};
-      dispatchPass(*frame_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      const shared::FilmFrame pass{total, values, marks_.address(), part.count, 1u << i};
+      dispatchPass(*frame_, commands, std::as_bytes(std::span(&pass, 1)), part.count);
     } else if (output.facts.pixel == OutputPixel::center) {
-      const VkDeviceSize rowBytes = VkDeviceSize{region_.width} * sizeof(vec4);
-      if (samples.begin == 0 && rows > 0)
-        commands.copy(output.batch, output.total, rows * rowBytes, firstRow * rowBytes, firstRow * rowBytes);
+      const VkDeviceSize offset = part.pixel * sizeof(vec4);
+      if (samples.begin == 0) commands.copy(output.batch, output.total, part.count * sizeof(vec4), offset, offset);
     } else if (output.facts.pixel == OutputPixel::coverage) {
-      const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
-      dispatchPass(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      const shared::FilmCoverage pass{total, values, batch};
+      dispatchPass(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), part.count);
     } else {
-      const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0,
-                                 output.batch.address(), pixels,
-                                 1.0f / static_cast<float>(samples.end - samples.begin)};
-      dispatchPass(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      const shared::Address squares =
+          output.squares ? output.squares.address() + part.pixel * 4 * sizeof(shared::FixedSum) : 0;
+      const shared::FilmAdd pass{total, squares, values, batch};
+      dispatchPass(*add_, commands, std::as_bytes(std::span(&pass, 1)), part.count);
     }
   }
   commands.barrier(gpu::Stage::all, gpu::Stage::all);

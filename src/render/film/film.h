@@ -9,6 +9,7 @@
 #define QUINTET_RENDER_FILM_FILM_H
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,9 @@ class Film {
   const SampleCounts& counts() const { return counts_; }
   bool stores(std::size_t output) const { return outputs_[output].stored; }
   std::uint64_t bytes() const;  // device memory
-  // Returns the device memory per pixel of a film for this program and these optional outputs.
-  static std::uint64_t bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted);
+  // Returns the device memory of a film for this region, program and optional outputs.
+  static std::uint64_t bytesFor(const Region& region, const program::Program& program,
+                                const std::vector<std::string>& wanted);
   // Sets the film's fields of the frame.
   void describe(shared::Frame& frame) const;
 
@@ -41,13 +43,17 @@ class Film {
   void resize(Region region);
 
   // Record commands around the launches of a batch or frame: beginBatch clears the batch sums; endBatch adds them to
-  // the totals, or replaces the totals by them. `cellBatches` is SampleCounts::cellBatches after an adaptive batch.
+  // the totals, or replaces the totals by them, and counts the samples.
   void beginBatch(gpu::Commands& commands);
   void endBatch(gpu::Commands& commands, SampleRange samples);
-  void endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches);
-  // The same for a part of a batch: rows [firstRow, firstRow + rows), or any pixels of it without OutputPixel::center. The
-  // samples are not counted (counts()): other films have the rest of the batch.
-  void endPart(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows);
+  // The same for rows [first, first + count) of a batch. The samples are not counted (counts()): other films have the rest.
+  void beginRows(gpu::Commands& commands, std::uint32_t first, std::uint32_t count);
+  void endRows(gpu::Commands& commands, SampleRange samples, std::uint32_t first, std::uint32_t count);
+  // The same for batches of tiles, sorted by batch, at most tileCount(), for programs with adaptive sampling. None is
+  // batch 0. `address`: of the tiles on the device. The samples are not counted: see setCellBatches().
+  void beginTiles(gpu::Commands& commands, std::size_t count);
+  void endTiles(gpu::Commands& commands, shared::Address address, std::span<const shared::FilmTile> tiles);
+  void setCellBatches(std::vector<std::uint32_t> batches);  // SampleCounts::cellBatches
 
   // Reads the current contents of one output. Blocks.
   FilmPlane plane(std::size_t output) const { return plane(outputs_.at(output)); }
@@ -79,7 +85,14 @@ class Film {
     bool stored = false;
     gpu::Buffer batch, total, squares;  // `total` is empty for an output that is not stored
   };
-  void addBatch(gpu::Commands& commands, SampleRange samples, std::uint32_t firstRow, std::uint32_t rows);
+  void clearValues(gpu::Commands& commands, std::uint64_t first, std::uint64_t count);
+  // Adds the values from `value` on to the pixels from `pixel` on, or to those of tiles.
+  struct Part {
+    std::uint64_t value = 0, pixel = 0;
+    std::uint32_t count = 0;
+    shared::Address tiles = 0;
+  };
+  void addPart(gpu::Commands& commands, SampleRange samples, const Part& part);
   FilmPlane plane(const Output& output) const;
   struct Rows {
     std::uint32_t first, count;
@@ -94,6 +107,7 @@ class Film {
   gpu::Context& context_;
   Region region_;
   program::Accumulation accumulation_;
+  bool adaptive_;  // program::Program::adaptive
   std::vector<Output> outputs_;
   gpu::Buffer statistics_;
   gpu::Buffer marks_;  // of shared::FilmFrame; empty unless the program accumulates

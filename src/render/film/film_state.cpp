@@ -102,6 +102,12 @@ std::uint32_t FilmState::cellOf(std::uint32_t x, std::uint32_t y) const {
   return 2 * (y / shared::kTileSize * tileColumns(region.width) + x / shared::kTileSize) + ((x + y) & 1u);
 }
 
+std::size_t endOfBatch(std::span<const shared::FilmTile> tiles, std::size_t first) {
+  std::size_t end = first;
+  while (end < tiles.size() && tiles[end].batch == tiles[first].batch) ++end;
+  return end;
+}
+
 uvec2 pixelAt(const Region& region, std::uint64_t index) {
   return {region.x + static_cast<std::uint32_t>(index % region.width),
           region.y + static_cast<std::uint32_t>(index / region.width)};

@@ -110,6 +110,8 @@ uvec2 pixelAt(const Region& region, std::uint64_t index);
 // Returns the number of tiles in a row of a film of this width in pixels.
 std::uint32_t tileColumns(std::uint32_t width);
 std::uint32_t tileCount(const Region& region);
+// Returns the end of the tiles from `first` on that have the same batch.
+std::size_t endOfBatch(std::span<const shared::FilmTile> tiles, std::size_t first);
 
 // Returns whether a render can have these counts: the same whole batches in all pixels from sample 0 on, and then more
 // batches per cell. `plan` holds batches per cell; it is empty for a render without a plan.

@@ -16,11 +16,6 @@
 namespace quintet::render {
 namespace {
 
-SampleRange batchSamples(std::uint64_t batch, std::uint32_t count) {
-  const auto first = static_cast<std::uint32_t>(batch * kBatchSamples);
-  return {first, first + count};
-}
-
 gpu::Buffer makeHeatBuffer(gpu::Context& context, const Region& film) {
   return {context, {.size = std::uint64_t{film.width} * film.height * sizeof(shared::HeatPixel), .name = "heat maps"}};
 }
@@ -113,13 +108,15 @@ Media Renderer::mediaAround(const scene::Camera& camera) const {
   return scene_.mediaAt(vec3(camera.worldFromCamera[3]));
 }
 
-Renderer::Target Renderer::wholeRegion() const {
+Renderer::Target Renderer::wholeRegion(std::uint32_t firstSample) {
   const Region& region = film_.region();
-  return {region.width, region.height, {region.x, region.y}, 0};
-}
-
-Renderer::Record Renderer::recordBegin() {
-  return [this](gpu::Commands& commands) { film_.beginBatch(commands); };
+  return {region.width,
+          region.height,
+          {region.x, region.y},
+          0,
+          {{region.height, firstSample}},
+          [this](gpu::Commands& commands) { film_.beginBatch(commands); },
+          {}};
 }
 
 void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples,
@@ -131,12 +128,20 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
       shared::Launch constants{};
       constants.frameAddress = frameBuffer_.address();
       constants.parameterAddress = parameterBuffer_.address();
-      constants.offset = target.offset + uvec2(0, row);
-      constants.firstSample = samples.begin + done;
       constants.sampleCount = std::min(count - done, perLaunch);
       constants.tiles = target.tiles;
       if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
-      rt::trace(commands, linked_.pipeline(), table_, std::as_bytes(std::span(&constants, 1)), target.width, rows);
+      // Without a barrier between batches: they run at the same time.
+      std::uint32_t begin = row;
+      for (const Target::Batch& batch : target.batches) {
+        const std::uint32_t end = std::min(batch.endRow, row + rows);
+        if (end <= begin) continue;
+        constants.offset = target.offset + uvec2(0, begin);
+        constants.firstSample = batch.firstSample + samples.begin + done;
+        rt::trace(commands, linked_.pipeline(), table_, std::as_bytes(std::span(&constants, 1)), target.width,
+                  end - begin);
+        begin = end;
+      }
       done += constants.sampleCount;
     }
   };
@@ -146,9 +151,10 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
 bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
   if (accumulates()) return renderFrames(sampleCount, progress);
   assert(sampleCount >= 1 && sampleCount <= kBatchSamples);
-  const SampleRange samples = batchSamples(nextBatch_, sampleCount);
-  const Record end = [&](gpu::Commands& commands) { film_.endBatch(commands, samples); };
-  if (!renderSamples(wholeRegion(), samples, end, progress)) return false;
+  const auto first = static_cast<std::uint32_t>(nextBatch_ * kBatchSamples);
+  Target target = wholeRegion(first);
+  target.end = [&](gpu::Commands& commands) { film_.endBatch(commands, {first, first + sampleCount}); };
+  if (!renderSamples(target, sampleCount, progress)) return false;
   ++nextBatch_;
   return true;
 }
@@ -167,12 +173,12 @@ bool Renderer::renderFrames(std::uint32_t count, const BatchProgress& progress) 
 bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
   assert(accumulates());
   const Stopwatch clock;
-  const Target target = wholeRegion();
+  Target target = wholeRegion(index);
+  target.end = [&](gpu::Commands& commands) { film_.endBatch(commands, {index, index + 1}); };
   for (std::uint32_t row = 0; row < target.height;) {
     const std::uint32_t rows = queue_.rows(target.width, row, target.height, 1);
-    const Record end = [&](gpu::Commands& commands) { film_.endBatch(commands, {index, index + 1}); };
-    launch(target, row, rows, {index, index + 1}, row == 0 ? recordBegin() : Record(),
-           row + rows == target.height ? end : Record());
+    launch(target, row, rows, {0, 1}, row == 0 ? target.begin : Record(),
+           row + rows == target.height ? target.end : Record());
     row += rows;
     if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
   }
@@ -184,21 +190,21 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
 
 void Renderer::renderPixel(uvec2 pixel, std::uint32_t index) {
   showSample(index, Stored::all);
-  launch({1, 1, pixel, 0}, 0, 1, {index, index + 1}, recordBegin(), {});
+  const Target target = wholeRegion(index);
+  launch({1, 1, pixel, 0, {{1, index}}, {}, {}}, 0, 1, {0, 1}, target.begin, {});
   finishLaunches();
 }
 
 void Renderer::renderSample(std::uint32_t index) {
   assert(!accumulates());
-  renderSamples(wholeRegion(), {index, index + 1}, {}, {});
+  renderSamples(wholeRegion(index), 1, {});
   finishLaunches();
 }
 
-bool Renderer::renderSamples(const Target& target, SampleRange samples, const Record& end,
-                             const BatchProgress& progress) {
+bool Renderer::renderSamples(const Target& target, std::uint32_t count, const BatchProgress& progress) {
   const Stopwatch clock;
-  const bool complete = settings_.shutter ? renderTimes(target, samples, end, progress)
-                                          : renderStrips(target, samples, recordBegin(), end, progress);
+  const bool complete = settings_.shutter ? renderTimes(target, count, progress)
+                                          : renderStrips(target, {0, count}, target.begin, target.end, progress);
   if (!complete) return false;
   statistics_.batches++;
   statistics_.samples = film_.counts().samples();
@@ -226,34 +232,40 @@ bool Renderer::renderStrips(const Target& target, SampleRange samples, const Rec
   return true;
 }
 
-bool Renderer::renderTimes(const Target& target, SampleRange samples, const Record& end,
-                           const BatchProgress& progress) {
-  const std::uint32_t count = samples.end - samples.begin;
+bool Renderer::renderTimes(const Target& target, std::uint32_t count, const BatchProgress& progress) {
+  assert(target.batches.size() == 1);
+  const std::uint32_t first = target.batches[0].firstSample;
   // Programs store the values of pixel centers with sample 0, which is therefore rendered a second time.
-  const std::uint32_t passes = samples.begin == 0 && storesCenters() ? count + 1 : count;
+  const std::uint32_t passes = first == 0 && storesCenters() ? count + 1 : count;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
     const bool centers = pass == count;
-    const std::uint32_t sample = centers ? 0 : samples.begin + pass;
+    const std::uint32_t sample = centers ? 0 : pass;
     if (centers)
       showTime(settings_.shutter->middle(), Stored::centers);
     else
-      showSample(sample, Stored::samples);
+      showSample(first + sample, Stored::samples);
     const BatchProgress part = [&](double fraction) { return !progress || progress((pass + fraction) / passes); };
-    if (!renderStrips(target, {sample, sample + 1}, pass == 0 ? recordBegin() : Record(),
-                      pass + 1 == passes ? end : Record(), part))
+    if (!renderStrips(target, {sample, sample + 1}, pass == 0 ? target.begin : Record(),
+                      pass + 1 == passes ? target.end : Record(), part))
       return false;
   }
   return true;
 }
 
+bool Renderer::needsOneBatch() const {
+  return settings_.shutter || settings_.log || settings_.instrument || settings_.rayRecords || runnable_.countsHeat;
+}
+
 bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) {
   assert(program().adaptive && limits.size() == 2 * std::size_t{tileCount(film_.region())});
-  const AdaptiveBatch next = nextAdaptiveBatch(film_.region(), film_.counts(), limits);
+  const AdaptiveBatches next = nextAdaptiveBatches(film_.region(), film_.counts(), limits, needsOneBatch());
   assert(!next.tiles.empty());
-  const Target target = tileTarget(next.tiles);
-  const SampleRange samples = batchSamples(next.batch, kBatchSamples);
-  const Record end = [&](gpu::Commands& commands) { film_.endAdaptiveBatch(commands, samples, next.counts); };
-  return renderSamples(target, samples, end, progress);
+  Target target = tileTarget(next.tiles);
+  target.end = [&, end = target.end](gpu::Commands& commands) {
+    end(commands);
+    film_.setCellBatches(next.counts);
+  };
+  return renderSamples(target, kBatchSamples, progress);
 }
 
 Renderer::Target Renderer::tileTarget(std::span<const shared::FilmTile> tiles) {
@@ -261,22 +273,25 @@ Renderer::Target Renderer::tileTarget(std::span<const shared::FilmTile> tiles) {
   const auto bytes = std::as_bytes(tiles);
   tileBuffer_ = gpu::Buffer(context_, {.size = bytes.size(), .memory = gpu::Memory::upload, .name = "film tiles"});
   std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
-  const auto count = static_cast<std::uint32_t>(tiles.size());
-  return {shared::kTileSize, count * shared::kTileSize, {0, 0}, tileBuffer_.address()};
+  const auto rows = [](std::size_t count) { return static_cast<std::uint32_t>(count) * shared::kTileSize; };
+  Target target{shared::kTileSize, rows(tiles.size()), {0, 0}, tileBuffer_.address(), {}, {}, {}};
+  for (std::size_t first = 0; first < tiles.size(); first = endOfBatch(tiles, first))
+    target.batches.push_back({rows(endOfBatch(tiles, first)), tiles[first].batch * kBatchSamples});
+  target.begin = [this, tiles](gpu::Commands& commands) { film_.beginTiles(commands, tiles.size()); };
+  target.end = [this, tiles](gpu::Commands& commands) { film_.endTiles(commands, tileBuffer_.address(), tiles); };
+  return target;
 }
 
 bool Renderer::renderPart(const Part& part, const BatchProgress& progress) {
   assert(!accumulates() && part.count > 0);
-  const bool adaptive = !part.tiles.empty();
-  Target target = adaptive ? tileTarget(part.tiles.subspan(part.first, part.count)) : wholeRegion();
-  if (!adaptive) {
-    target.offset.y += part.first;
-    target.height = part.count;
-  }
-  const Record end = [&](gpu::Commands& commands) {
-    film_.endPart(commands, part.samples, adaptive ? 0 : part.first, adaptive ? 0 : part.count);
-  };
-  return renderSamples(target, part.samples, end, progress);
+  if (!part.tiles.empty())
+    return renderSamples(tileTarget(part.tiles.subspan(part.first, part.count)), kBatchSamples, progress);
+  Target target = wholeRegion(part.samples.begin);
+  target.offset.y += part.first;
+  target.height = target.batches[0].endRow = part.count;
+  target.begin = [&](gpu::Commands& commands) { film_.beginRows(commands, part.first, part.count); };
+  target.end = [&](gpu::Commands& commands) { film_.endRows(commands, part.samples, part.first, part.count); };
+  return renderSamples(target, part.samples.end - part.samples.begin, progress);
 }
 
 FilmState Renderer::takeFilm() {

@@ -44,21 +44,24 @@ class Renderer {
   void renderPixel(uvec2 pixel, std::uint32_t index);
   // The same for all pixels; for programs whose samples the film averages.
   void renderSample(std::uint32_t index);
-  // Adaptive sampling, for programs that support it (Program::adaptive): renders the next batch of the cells
-  // (SampleCounts::cellBatches) that have the fewest batches among those below `limits`. Asserts that one is below its
-  // limit. Returns false if the batch was canceled.
+  // Adaptive sampling, for programs that support it (Program::adaptive): renders the next batches (nextAdaptiveBatches) of the
+  // cells (SampleCounts::cellBatches) that are below `limits`. Asserts that there is one, and that all pixels have batch 0.
+  // Returns false if the batches were canceled.
   bool renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress = {});
 
   // A batch that several devices share: each renders parts of it, and their films are added up (addFilm). Renders rows
-  // [first, first + count) of the region, or tiles [first, first + count) of `tiles` if there are any (AdaptiveBatch::tiles),
+  // [first, first + count) of the region, or tiles [first, first + count) of `tiles` if there are any (AdaptiveBatches::tiles),
   // and does not count the samples (Film::counts). Not for programs that accumulate. Returns false if it was canceled.
   struct Part {
-    SampleRange samples;  // of the batch
+    SampleRange samples;  // of the batch, for rows
     std::span<const shared::FilmTile> tiles;
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
   bool renderPart(const Part& part, const BatchProgress& progress = {});
+  // Whether batches of the same pixel must run one after another (nextAdaptiveBatches): they have different times, or the
+  // program counts what a pixel does.
+  bool needsOneBatch() const;
   // Reads the film, without counts, and discards its samples. Blocks.
   FilmState takeFilm();
 
@@ -115,14 +118,20 @@ class Renderer {
   const program::Program& program() const { return runnable_.description; }
 
  private:
-  // The area of a launch: rows of the region, or film tiles, one below another.
+  using Record = LaunchQueue::Record;
+  // The area of launches: rows of the region, or film tiles, one below another.
   struct Target {
     std::uint32_t width = 0;   // invocations per row
     std::uint32_t height = 0;  // rows
     uvec2 offset{0};           // pixel offset of row 0 in the whole image
     shared::Address tiles = 0;
+    struct Batch {
+      std::uint32_t endRow = 0;
+      std::uint32_t firstSample = 0;
+    };
+    std::vector<Batch> batches;  // of the rows up to endRow; for tiles, several can hold the same pixels
+    Record begin, end;           // before the first launch and after the last one; can be empty
   };
-  using Record = LaunchQueue::Record;
 
   // The outputs that a launch stores.
   enum class Stored {
@@ -139,19 +148,20 @@ class Renderer {
   Media mediaAround(const scene::Camera& camera) const;  // the solids that contain it
   bool storesMotion() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
-  Target wholeRegion() const;
-  Target tileTarget(std::span<const shared::FilmTile> tiles);  // uploads the tiles
-  Record recordBegin();
-  // Launches a strip of the target with `count` samples from `first` on.
+  Target wholeRegion(std::uint32_t firstSample);
+  // Uploads the tiles, which must stay valid until the last launch has been recorded.
+  Target tileTarget(std::span<const shared::FilmTile> tiles);
+  // Launches a strip of the target. `samples`: counted from the first ones of its batches.
   void launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples, const Record& before,
               const Record& after);
   bool renderFrames(std::uint32_t count, const BatchProgress& progress);
-  bool renderSamples(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress);
+  // Renders `count` samples of the target's batches.
+  bool renderSamples(const Target& target, std::uint32_t count, const BatchProgress& progress);
   // The parts of renderSamples(): in strips, all samples at the time that the scene shows; and each sample at its own
-  // time. They run `begin` before the first launch and `end` after the last one.
+  // time. `begin` and `end`: those of the target, or empty.
   bool renderStrips(const Target& target, SampleRange samples, const Record& begin, const Record& end,
                     const BatchProgress& progress);
-  bool renderTimes(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress);
+  bool renderTimes(const Target& target, std::uint32_t count, const BatchProgress& progress);
   // Waits for the launches in flight, with their time limit, so that a hanging launch is detected. The wait counts as
   // render time.
   void finishLaunches() const;

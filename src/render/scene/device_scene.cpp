@@ -211,7 +211,7 @@ void DeviceScene::uploadMaterials(const scene::Scene& scene, scene::Scene* consu
   textures_->addUnused();
   const std::uint32_t slots = textures_->count() + TextureSlots::kCount;
   set_ = std::make_unique<gpu::BindlessSet>(context_, std::max(slots, std::min(kMinSlots, context_.info().maxTextures)),
-                                            static_cast<std::uint32_t>(sizeof(shared::Launch)));
+                                            shared::kPushConstantBytes);
   parameterSlots_.emplace(*set_, textures_->count(), TextureSlots::kCount);
   uploader.flush();
   textures_->bind(*set_);

@@ -9,7 +9,7 @@
 
 namespace quintet::render {
 
-static_assert(sizeof(shared::DeformPass) <= sizeof(shared::Launch), "the push constants of the scene's set");
+static_assert(sizeof(shared::DeformPass) <= shared::kPushConstantBytes);
 namespace {
 
 constexpr VkDeviceSize kArrayAlignment = 16;

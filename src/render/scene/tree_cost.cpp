@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "quintet/shared/frame.h"
+#include "quintet/shared/pass.h"
 #include "render/compute_pass.h"
 
 namespace quintet::render {
 
-static_assert(sizeof(shared::TreeCostPass) <= sizeof(shared::Launch), "the push constants of the scene's set");
+static_assert(sizeof(shared::TreeCostPass) <= shared::kPushConstantBytes);
 
 TreeCost::TreeCost(gpu::Context& context, const rt::BlasInput& built,
                    std::vector<shared::TreeCostGeometry> geometries) {

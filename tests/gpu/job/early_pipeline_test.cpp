@@ -6,7 +6,7 @@
 
 #include "job/engine.h"
 #include "program/load.h"
-#include "quintet/shared/frame.h"
+#include "quintet/shared/pass.h"
 
 namespace quintet::job {
 namespace {
@@ -33,7 +33,7 @@ TEST_F(EarlyPipelines, LinkingFindsThePipeline) {
   gpu::Context& context = engine().context();
   const auto early = EarlyPipeline::make(context, normals, stages, engine().pipelineCache());
   ASSERT_TRUE(early);
-  const gpu::BindlessSet set(context, 7, static_cast<std::uint32_t>(sizeof(shared::Launch)));
+  const gpu::BindlessSet set(context, 7, shared::kPushConstantBytes);
   const program::LinkedProgram first(context, set, normals, stages, 1, &engine().pipelineCache());
   const program::LinkedProgram second(context, set, normals, stages, 2, &engine().pipelineCache());
   EXPECT_EQ(first.pipeline().handle(), early->linked().pipeline().handle());

@@ -209,7 +209,7 @@ TEST_F(FilmTest, StoresRequestedOutputsOnly) {
   EXPECT_THROW(plain.image(1), UsageError);
   EXPECT_THROW(renderer({"colr"}), UsageError);
   EXPECT_GT(renderer({"depth"}).film().bytes(), plain.film().bytes());
-  EXPECT_EQ(plain.film().bytes(), render::Film::bytesPerPixel(options.program, {}) * 37 * 5);
+  EXPECT_EQ(plain.film().bytes(), render::Film::bytesFor(plain.film().region(), options.program, {}));
 }
 
 TEST_F(FilmTest, DescribesItsPlanes) {
@@ -333,15 +333,17 @@ TEST_F(FilmTest, MergesAndResumesToTheSameBytes) {
   EXPECT_EQ(resumed.statistics().samples, 14u);
 }
 
-// Two renderers share batches: rows of the first three, tiles of an adaptive one.
+// Two renderers share batches: rows of the first three, then tiles of adaptive ones.
 TEST_F(FilmTest, PartsOfBatchesAddUpToTheSameBytes) {
+  options.width = 90, options.height = 64;  // 3 x 2 tiles
   const std::vector<std::string> outputs{"depth", "ids"};
   render::Renderer whole = renderer(outputs), first = renderer(outputs), second = renderer(outputs);
   for (const std::uint32_t count : {4u, 4u, 4u}) whole.renderBatch(count);
-  const std::vector<std::uint32_t> limits{3, 4, 4, 3};
-  const render::AdaptiveBatch adaptive =
-      render::nextAdaptiveBatch(whole.film().region(), whole.film().counts(), limits);
-  ASSERT_EQ(adaptive.tiles.size(), 2u);
+  const std::vector<std::uint32_t> limits{3, 4, 6, 3, 3, 3, 5, 5, 3, 3, 3, 3};
+  const render::AdaptiveBatches adaptive =
+      render::nextAdaptiveBatches(whole.film().region(), whole.film().counts(), limits);
+  ASSERT_EQ(adaptive.tiles.size(), 6u);
+  ASSERT_EQ(adaptive.tiles[3].batch, 4u) << "the second batch of a tile";
   ASSERT_TRUE(whole.renderCells(limits));
 
   const std::uint32_t rows = whole.film().region().height;
@@ -352,8 +354,9 @@ TEST_F(FilmTest, PartsOfBatchesAddUpToTheSameBytes) {
     ASSERT_TRUE(first.renderPart({samples, {}, cut, 2}));
     ASSERT_TRUE(second.renderPart({samples, {}, cut + 2, rows - cut - 2}));
   }
-  ASSERT_TRUE(first.renderPart({{12, 16}, adaptive.tiles, 1, 1}));
-  ASSERT_TRUE(second.renderPart({{12, 16}, adaptive.tiles, 0, 1}));
+  ASSERT_TRUE(first.renderPart({{}, adaptive.tiles, 1, 3}));
+  ASSERT_TRUE(second.renderPart({{}, adaptive.tiles, 0, 1}));
+  ASSERT_TRUE(second.renderPart({{}, adaptive.tiles, 4, 2}));
   render::FilmState joined = second.takeFilm();
   render::addFilm(joined, first.takeFilm());
   joined.counts = whole.film().counts();
@@ -426,6 +429,12 @@ TEST(AdaptiveFilm, IsIndependentOfLaunchesAndCellOrder) {
   for (std::size_t c = plan.size(); c-- > 0;)
     if (plan[c] > 1) backwards.push_back(cells([&](std::size_t other) { return other == c; }));
   EXPECT_TRUE(sameBytes(film(1e9, 2, backwards), whole)) << "cell by cell, starting at the last one";
+  std::vector<Limits> forwards;
+  for (std::uint32_t batches = 2; batches <= 5; ++batches) {
+    Limits& limits = forwards.emplace_back(plan);
+    for (std::uint32_t& limit : limits) limit = std::min(limit, batches);
+  }
+  EXPECT_TRUE(sameBytes(film(1e9, 1, forwards), whole)) << "one batch at a time";
 }
 
 }  // namespace

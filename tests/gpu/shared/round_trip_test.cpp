@@ -40,8 +40,8 @@ std::string glslFor() {
              "#include <quintet/shared/explain.h>\n#include <quintet/shared/heat.h>\n"
              "#include <quintet/shared/deform.h>\n") +
          kGlslWords + Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
-         Fields<shared::CameraData>::glsl() +
-         (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName)
+         Fields<shared::CameraData>::glsl() + Fields<shared::FilmBatch>::glsl() +
+         (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData", "FilmBatch"}.contains(Fields<T>::kName)
               ? ""
               : Fields<T>::glsl()) +
          "struct AllWords { uint at[256]; };\n";
@@ -54,8 +54,8 @@ using SharedStructs = testing::Types<
     shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
     shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData,
     shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame,
-    shared::FilmAdd, shared::FilmMean, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck,
-    shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument,
+    shared::FilmBatch, shared::FilmAdd, shared::FilmMean, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame,
+    shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument,
     shared::InstrumentReport, shared::InstrumentPixel, shared::RecursionGuard, shared::LogHeader, shared::LogRecord,
     shared::HeatPixel, shared::ExplainRay, shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage,
     shared::ExplainHit, shared::ExplainBox, shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore,

@@ -125,7 +125,7 @@ TEST(WorkQueue, RepeatsWhatALostDeviceHad) {
 TEST(WorkQueue, CutsTiles) {
   std::vector<shared::FilmTile> tiles(37);
   for (shared::FilmTile& tile : tiles) tile.drawn[0] = tile.drawn[1] = 1;
-  const auto batch = std::make_shared<WorkBatch>(WorkBatch::ofTiles(tiles, {8, 12}));
+  const auto batch = std::make_shared<WorkBatch>(WorkBatch::ofTiles(tiles));
   EXPECT_EQ(batch->units, 37u);
   EXPECT_DOUBLE_EQ(batch->unitSamples, 32 * 32 * 4);
   WorkQueue queue({batch}, {});

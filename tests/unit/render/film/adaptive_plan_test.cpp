@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of adaptive sampling for films whose samples are known, and the cells of the next batch.
+// The plan of adaptive sampling for films whose samples are known, and the order of their batches.
 #include "render/film/adaptive_plan.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "film_simulation.h"
 
@@ -92,39 +96,79 @@ TEST(PlanCells, DoesNotBiasTheMean) {
   EXPECT_GT(std::abs(biased - 1.0), 6.0 * error) << "the test is sensitive to the bias of the wrong cells";
 }
 
-const Region kRegion{7, 3, shared::kTileSize + 5, 2 * shared::kTileSize};  // 2 x 2 tiles, 8 cells
+const Region kRegion{7, 3, 2 * shared::kTileSize - 5, 2 * shared::kTileSize};  // 2 x 2 tiles, 8 cells
 
-TEST(AdaptiveBatch, StartsWithTheCommonBatches) {
-  SampleCounts counts;
-  counts.ranges = {{0, 2 * kBatchSamples}};
-  const AdaptiveBatch next = nextAdaptiveBatch(kRegion, counts, {2, 2, 5, 2, 2, 2, 3, 9});
-  EXPECT_EQ(next.batch, 2u);
-  EXPECT_EQ(next.counts, (std::vector<std::uint32_t>{2, 2, 3, 2, 2, 2, 3, 3}));
-  ASSERT_EQ(next.tiles.size(), 2u);
-  EXPECT_EQ(next.tiles[0].x, shared::kTileSize);
-  EXPECT_EQ(next.tiles[0].y, 0u);
-  EXPECT_EQ(next.tiles[0].drawn[0], 1u);
-  EXPECT_EQ(next.tiles[0].drawn[1], 0u);
-  EXPECT_EQ(next.tiles[1].x, shared::kTileSize);
-  EXPECT_EQ(next.tiles[1].y, shared::kTileSize);
-  EXPECT_EQ(next.tiles[1].drawn[0], 1u);
-  EXPECT_EQ(next.tiles[1].drawn[1], 1u);
+using Limits = std::vector<std::uint32_t>;
+
+// "x y batch cells", for each tile.
+std::vector<std::string> describe(const AdaptiveBatches& batches) {
+  std::vector<std::string> tiles;
+  for (const shared::FilmTile& tile : batches.tiles)
+    tiles.push_back(fmt::format("{} {} {} {}", tile.x / shared::kTileSize, tile.y / shared::kTileSize, tile.batch,
+                                tile.drawn[0] != 0u ? (tile.drawn[1] != 0u ? "both" : "even") : "odd"));
+  return tiles;
 }
 
-TEST(AdaptiveBatch, SelectsTheCellsWithTheFewestBatches) {
+// As many as the film has tiles.
+TEST(AdaptiveBatches, FollowTheCommonBatches) {
+  SampleCounts counts;
+  counts.ranges = {{0, 2 * kBatchSamples}};
+  const Limits limits{2, 2, 5, 2, 2, 2, 3, 9};
+  const AdaptiveBatches next = nextAdaptiveBatches(kRegion, counts, limits);
+  EXPECT_EQ(next.counts, (Limits{2, 2, 4, 2, 2, 2, 3, 4}));
+  EXPECT_EQ(describe(next), (std::vector<std::string>{"1 0 2 even", "1 1 2 both", "1 0 3 even", "1 1 3 odd"}));
+}
+
+TEST(AdaptiveBatches, BeginWithTheCellsThatHaveTheFewest) {
   SampleCounts counts;
   counts.ranges = {{0, 2 * kBatchSamples}};
   counts.cellBatches = {4, 3, 2, 6, 5, 3, 3, 2};
-  const AdaptiveBatch next = nextAdaptiveBatch(kRegion, counts, {9, 9, 2, 9, 9, 9, 9, 2});  // cells with 2 are complete
-  EXPECT_EQ(next.batch, 3u);
-  EXPECT_EQ(next.counts, (std::vector<std::uint32_t>{4, 4, 2, 6, 5, 4, 4, 2}));
-  EXPECT_EQ(next.tiles.size(), 3u);
+  const Limits limits{9, 9, 2, 9, 9, 9, 9, 2};  // cells with 2 are complete
+  const AdaptiveBatches one = nextAdaptiveBatches(kRegion, counts, limits, true);
+  EXPECT_EQ(one.counts, (Limits{4, 4, 2, 6, 5, 4, 4, 2}));
+  EXPECT_EQ(describe(one), (std::vector<std::string>{"0 0 3 odd", "0 1 3 odd", "1 1 3 even"}));
 }
 
-TEST(AdaptiveBatch, IsEmptyAtTheLimits) {
+// Every cell gets each batch up to its limit once, in order, and no launch has more tiles than the film.
+TEST(AdaptiveBatches, FillTheFilm) {
+  const Region region{0, 0, 100, 70};  // 4 x 3 tiles
+  const Limits limits{1, 3, 2, 1, 4, 40, 1, 1, 3, 3, 2, 5, 7, 7, 9, 2, 1, 4, 4, 4, 3, 2, 6, 1};
+  for (const bool one : {false, true}) {
+    SampleCounts counts;
+    counts.ranges = {{0, kBatchSamples}};
+    Limits reached(limits.size(), 1);
+    std::uint32_t launches = 0;
+    for (;; ++launches) {
+      const AdaptiveBatches next = nextAdaptiveBatches(region, counts, limits, one);
+      if (next.tiles.empty()) break;
+      ASSERT_LE(next.tiles.size(), 12u);
+      for (std::size_t first = 0; first < next.tiles.size(); first = endOfBatch(next.tiles, first)) {
+        if (first > 0) {
+          EXPECT_FALSE(one);
+          EXPECT_GT(next.tiles[first].batch, next.tiles[first - 1].batch);
+        }
+        std::set<std::uint32_t> tiles;
+        for (std::size_t i = first; i < endOfBatch(next.tiles, first); ++i) {
+          const std::uint32_t tile = next.tiles[i].y / shared::kTileSize * 4 + next.tiles[i].x / shared::kTileSize;
+          EXPECT_TRUE(tiles.insert(tile).second) << "twice in one batch";
+          for (std::uint32_t c = 0; c < 2; ++c) {
+            if (next.tiles[i].drawn[c] == 0u) continue;
+            EXPECT_EQ(next.tiles[i].batch, reached[2 * tile + c]++);
+          }
+        }
+      }
+      EXPECT_EQ(next.counts, reached);
+      counts.cellBatches = next.counts;
+    }
+    EXPECT_EQ(reached, limits);
+    EXPECT_EQ(launches, one ? 39u : 7u) << "39 batches, 73 tiles";
+  }
+}
+
+TEST(AdaptiveBatches, AreEmptyAtTheLimits) {
   SampleCounts counts;
-  counts.cellBatches = std::vector<std::uint32_t>(8, 4);
-  EXPECT_TRUE(nextAdaptiveBatch(kRegion, counts, std::vector<std::uint32_t>(8, 4)).tiles.empty());
+  counts.cellBatches = Limits(8, 4);
+  EXPECT_TRUE(nextAdaptiveBatches(kRegion, counts, Limits(8, 4)).tiles.empty());
 }
 
 }  // namespace
