@@ -122,11 +122,14 @@ TEST(AdaptiveBatches, FollowTheCommonBatches) {
 TEST(AdaptiveBatches, BeginWithTheCellsThatHaveTheFewest) {
   SampleCounts counts;
   counts.ranges = {{0, 2 * kBatchSamples}};
-  counts.cellBatches = {4, 3, 2, 6, 5, 3, 3, 2};
+  counts.cellBatches = {4, 3, 2, 6, 5, 3, 4, 2};
   const Limits limits{9, 9, 2, 9, 9, 9, 9, 2};  // cells with 2 are complete
   const AdaptiveBatches one = nextAdaptiveBatches(kRegion, counts, limits, true);
   EXPECT_EQ(one.counts, (Limits{4, 4, 2, 6, 5, 4, 4, 2}));
-  EXPECT_EQ(describe(one), (std::vector<std::string>{"0 0 3 odd", "0 1 3 odd", "1 1 3 even"}));
+  EXPECT_EQ(describe(one), (std::vector<std::string>{"0 0 3 odd", "0 1 3 odd"}));
+  const AdaptiveBatches all = nextAdaptiveBatches(kRegion, counts, limits);
+  EXPECT_EQ(all.counts, (Limits{5, 5, 2, 6, 5, 5, 4, 2}));
+  EXPECT_EQ(describe(all), (std::vector<std::string>{"0 0 3 odd", "0 1 3 odd", "0 0 4 both", "0 1 4 odd"}));
 }
 
 // Every cell gets each batch up to its limit once, in order, and no launch has more tiles than the film.
