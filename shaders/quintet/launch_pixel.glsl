@@ -21,8 +21,8 @@ uvec2 launchPixelIn(uint column) {
 // The index of a pixel of this invocation's row in the arrays of the outputs (Frame::outputs).
 uint outputIndex(uvec2 pixel) {
   const uvec2 film = pixel - frame.filmOffset;
-  if (launch.tiles == 0ul) return film.y * frame.filmWidth + film.x;
-  return (gl_LaunchIDEXT.y + launch.offset.y) * kTileSize + film.x % kTileSize;
+  return launch.tiles == 0ul ? film.y * frame.filmWidth + film.x
+                             : (gl_LaunchIDEXT.y + launch.offset.y) * kTileSize + film.x % kTileSize;
 }
 
 // The pixel of this invocation.

@@ -34,9 +34,9 @@ struct AdaptiveBatches {
   std::vector<std::uint32_t> counts;  // SampleCounts::cellBatches after these batches
 };
 
-// Selects batches of the cells that have fewer than `limits` demands, those with the lowest indices first, for as many tiles as the
-// film has. The last cells with many batches then do not run alone, which would use a small part of
-// a GPU. `one`: only batches with the same index.
+// Selects batches of the cells that have fewer than `limits` demands, those with the lowest indices first, for as many tiles as
+// the film has. The last cells with many batches then do not run alone, which would use a small part of a GPU. `one`: only
+// batches with the same index.
 AdaptiveBatches nextAdaptiveBatches(const Region& region, const SampleCounts& counts,
                                     const std::vector<std::uint32_t>& limits, bool one = false);
 

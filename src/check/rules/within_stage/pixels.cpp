@@ -240,7 +240,31 @@ struct Target {
   spirv::ValuePart x, y;
 };
 
-// The target of a store to an output: y * filmWidth + x.
+// The target of an index y * filmWidth + x. In outputIndex(), it is one of two values; the other one is for tiles.
+std::optional<Target> targetOfIndex(const spirv::Module& module, Id index, int depth = 0) {
+  const spirv::Instruction* i = module.definition(spirv::originOf(module, {index}).id);
+  if (!i || depth > kMaxDepth) return {};
+  if (i->op == Op::OpPhi || i->op == Op::OpSelect) {
+    const bool phi = i->op == Op::OpPhi;
+    for (std::size_t k = phi ? 0 : 1; k < i->operands.size(); k += phi ? 2 : 1)
+      if (const auto found = targetOfIndex(module, i->at(k), depth + 4)) return found;
+    return {};
+  }
+  if (i->op != Op::OpIAdd) return {};
+  for (const std::size_t k : {0u, 1u}) {
+    const spirv::Instruction* row = module.definition(spirv::originOf(module, {i->at(k)}).id);
+    if (!row || row->op != Op::OpIMul) continue;
+    for (const std::size_t f : {0u, 1u}) {
+      const spirv::ValuePart factor = spirv::originOf(module, {row->at(f)});
+      const spirv::Instruction* width = module.definition(factor.id);
+      if (width && isMember(module, *width, factor.path, "Frame", "filmWidth"))
+        return Target{withoutFilmOffset(module, i->at(1 - k), {}), withoutFilmOffset(module, row->at(1 - f), {})};
+    }
+  }
+  return {};
+}
+
+// The target of a store to an output.
 std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Instruction& store) {
   const spirv::Instruction* chain = module.definition(store.at(0));
   if (!chain || (chain->op != Op::OpAccessChain && chain->op != Op::OpInBoundsAccessChain) ||
@@ -248,19 +272,7 @@ std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Ins
     return {};
   const auto member = spirv::bufferMember(module, store);
   if (!member || libraryName(member->structure) != "OutputArray") return {};
-  const spirv::Instruction* sum = module.definition(spirv::originOf(module, {chain->at(2)}).id);
-  if (!sum || sum->op != Op::OpIAdd) return {};
-  for (const std::size_t k : {0u, 1u}) {
-    const spirv::Instruction* row = module.definition(spirv::originOf(module, {sum->at(k)}).id);
-    if (!row || row->op != Op::OpIMul) continue;
-    for (const std::size_t f : {0u, 1u}) {
-      const spirv::ValuePart factor = spirv::originOf(module, {row->at(f)});
-      const spirv::Instruction* width = module.definition(factor.id);
-      if (width && isMember(module, *width, factor.path, "Frame", "filmWidth"))
-        return Target{withoutFilmOffset(module, sum->at(1 - k), {}), withoutFilmOffset(module, row->at(1 - f), {})};
-    }
-  }
-  return {};
+  return targetOfIndex(module, chain->at(2));
 }
 
 std::optional<Target> targetOf(const spirv::Module& module, const spirv::Instruction& i) {
