@@ -90,7 +90,7 @@ bool hasRemainingBatches(const render::FilmFile& file) {
 
 // One process per batch. After each batch, a copy of the checkpoint is completed by a single process.
 TEST_F(Adaptive, ResumesAfterEachBatch) {
-  const std::vector<std::string> what{"--spp", "28", "--aov", "variance,sample_count,depth,cryptomatte_object"};
+  const std::vector<std::string> what{"--spp", "40", "--aov", "variance,sample_count,depth,cryptomatte_object"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), what.begin(), what.end());
     return more;
