@@ -15,7 +15,7 @@
 
 namespace quintet::job {
 
-// A batch of all pixels of a film, or batches of some of its tiles.
+// One batch of all pixels of a film, or batches of tiles (render::AdaptiveBatches).
 struct WorkBatch {
   render::SampleRange samples;          // of rows
   std::vector<shared::FilmTile> tiles;  // empty: all rows

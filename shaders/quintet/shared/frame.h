@@ -149,7 +149,7 @@ QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 48 + 16 + 72);
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.
 QT_CONSTANT kTileSize = 32u;
-// A batch of a tile. A tile can have several batches in one list, for which the program runs at the same time.
+// A batch of a tile. A list can contain several batches of a tile, which then run at the same time.
 struct FilmTile {
   uint x;            // position of the first pixel, relative to the film
   uint y;

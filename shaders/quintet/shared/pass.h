@@ -10,7 +10,7 @@ QT_SHARED_BEGIN
 // Workgroups form rows of kPassColumns, because a single dimension would exceed the device limit for large arrays.
 QT_CONSTANT kPassGroupSize = 64;
 QT_CONSTANT kPassColumns = 32768;
-// Of the pipelines of a scene, which share one layout: of passes, and of ray tracing programs (shared::Launch).
+// Size of the push constants of a scene's pipelines, which share one layout: ray tracing programs (shared::Launch) and passes.
 QT_CONSTANT kPushConstantBytes = 48;
 
 QT_SHARED_END

@@ -49,8 +49,8 @@ class Film {
   // The same for rows [first, first + count) of a batch. The samples are not counted (counts()): other films have the rest.
   void beginRows(gpu::Commands& commands, std::uint32_t first, std::uint32_t count);
   void endRows(gpu::Commands& commands, SampleRange samples, std::uint32_t first, std::uint32_t count);
-  // The same for batches of tiles, sorted by batch, at most tileCount(), for programs with adaptive sampling. None is
-  // batch 0. `address`: of the tiles on the device. The samples are not counted: see setCellBatches().
+  // The same for at most tileCount() tiles, sorted by batch, of programs with adaptive sampling. Their batches are not batch 0.
+  // `address`: of the tiles on the device. The samples are not counted; setCellBatches() does that.
   void beginTiles(gpu::Commands& commands, std::size_t count);
   void endTiles(gpu::Commands& commands, shared::Address address, std::span<const shared::FilmTile> tiles);
   void setCellBatches(std::vector<std::uint32_t> batches);  // SampleCounts::cellBatches

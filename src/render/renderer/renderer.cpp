@@ -131,7 +131,7 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
       constants.sampleCount = std::min(count - done, perLaunch);
       constants.tiles = target.tiles;
       if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
-      // Without a barrier between batches: they run at the same time.
+      // There is no barrier between batches, so that they run at the same time.
       std::uint32_t begin = row;
       for (const Target::Batch& batch : target.batches) {
         const std::uint32_t end = std::min(batch.endRow, row + rows);
@@ -275,8 +275,10 @@ Renderer::Target Renderer::tileTarget(std::span<const shared::FilmTile> tiles) {
   std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
   const auto rows = [](std::size_t count) { return static_cast<std::uint32_t>(count) * shared::kTileSize; };
   Target target{shared::kTileSize, rows(tiles.size()), {0, 0}, tileBuffer_.address(), {}, {}, {}};
-  for (std::size_t first = 0; first < tiles.size(); first = endOfBatch(tiles, first))
-    target.batches.push_back({rows(endOfBatch(tiles, first)), tiles[first].batch * kBatchSamples});
+  for (std::size_t first = 0, end = 0; first < tiles.size(); first = end) {
+    end = endOfBatch(tiles, first);
+    target.batches.push_back({rows(end), tiles[first].batch * kBatchSamples});
+  }
   target.begin = [this, tiles](gpu::Commands& commands) { film_.beginTiles(commands, tiles.size()); };
   target.end = [this, tiles](gpu::Commands& commands) { film_.endTiles(commands, tileBuffer_.address(), tiles); };
   return target;

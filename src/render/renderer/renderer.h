@@ -59,8 +59,8 @@ class Renderer {
     std::uint32_t count = 0;
   };
   bool renderPart(const Part& part, const BatchProgress& progress = {});
-  // Whether batches of the same pixel must run one after another (nextAdaptiveBatches): they have different times, or the
-  // program counts what a pixel does.
+  // Returns whether batches of a pixel must run one after another (nextAdaptiveBatches), because their samples have different times
+  // or the program keeps records by pixel.
   bool needsOneBatch() const;
   // Reads the film, without counts, and discards its samples. Blocks.
   FilmState takeFilm();
@@ -151,7 +151,7 @@ class Renderer {
   Target wholeRegion(std::uint32_t firstSample);
   // Uploads the tiles, which must stay valid until the last launch has been recorded.
   Target tileTarget(std::span<const shared::FilmTile> tiles);
-  // Launches a strip of the target. `samples`: counted from the first ones of its batches.
+  // Launches a strip of the target. `samples` is relative to the first sample of each batch.
   void launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples, const Record& before,
               const Record& after);
   bool renderFrames(std::uint32_t count, const BatchProgress& progress);

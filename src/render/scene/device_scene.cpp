@@ -18,6 +18,8 @@
 namespace quintet::render {
 namespace {
 
+static_assert(sizeof(shared::Launch) <= shared::kPushConstantBytes);
+
 constexpr VkDeviceSize kLightStaging = VkDeviceSize{32} << 20;   // largest staging memory for the tables of lights
 constexpr VkDeviceSize kMinLightBuffer = VkDeviceSize{1} << 20;  // buffers up to this size are not shrunk
 constexpr std::uint32_t kMinSlots = 1024;                        // of textures; those without a texture are white
