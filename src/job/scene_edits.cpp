@@ -248,14 +248,10 @@ void RenderJob::update(Observer& observer) {
     rebuildScene(observer);
     updateFrame();
   } else {
-    const bool changed = !movedInstances_.empty() || emissionOutdated_ || lightsOutdated_ || environmentOutdated_;
     editDevice();
     updateFrame();
     changeScenes([](render::DeviceScene& device) { device.updateLights(); });  // once for all edits
-    if (programOutdated_)
-      relink(observer);
-    else if (changed)
-      changeRenderers([](render::Renderer& renderer) { renderer.sceneChanged(); });
+    if (programOutdated_) relink(observer);
   }
   sceneOutdated_ = programOutdated_ = emissionOutdated_ = lightsOutdated_ = environmentOutdated_ = false;
   movedInstances_.clear();

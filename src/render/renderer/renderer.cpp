@@ -54,7 +54,8 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
 void Renderer::uploadFrame() { uploadFrame(settings_.camera, Stored::all); }
 
 void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
-  cameraMedia_ = mediaAround(camera);
+  shownRevision_ = scene_.revision();
+  const Media media = scene_.mediaAt(vec3(camera.worldFromCamera[3]));
   shared::Frame frame = scene_.frameTemplate();
   frame.camera = frame.previousCamera = makeCamera(camera, settings_.width, settings_.height);
   if (settings_.cameraAt && storesMotion())
@@ -71,7 +72,7 @@ void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
   frame.heat = heat_ ? heat_.address() : 0;
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
-  frame.cameraMedia = {cameraMedia_[0], cameraMedia_[1], cameraMedia_[2], cameraMedia_[3]};
+  frame.cameraMedia = {media[0], media[1], media[2], media[3]};
   film_.describe(frame);
   if (stored != Stored::all) {
     for (std::size_t i = 0; i < program().outputs.size(); ++i)
@@ -104,10 +105,6 @@ bool Renderer::storesMotion() const {
   return false;
 }
 
-Media Renderer::mediaAround(const scene::Camera& camera) const {
-  return scene_.mediaAt(vec3(camera.worldFromCamera[3]));
-}
-
 Renderer::Target Renderer::wholeRegion(std::uint32_t firstSample) {
   const Region& region = film_.region();
   return {region.width,
@@ -121,6 +118,10 @@ Renderer::Target Renderer::wholeRegion(std::uint32_t firstSample) {
 
 void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples,
                       const Record& before, const Record& after) {
+  if (scene_.revision() != shownRevision_) {
+    queue_.finish();
+    uploadFrame();
+  }
   const std::uint32_t count = samples.end - samples.begin;
   const std::uint32_t perLaunch = settings_.log || runnable_.countsHeat ? 1 : program().samplesPerLaunch;
   const Record trace = [&](gpu::Commands& commands) {
@@ -328,12 +329,11 @@ void Renderer::restart() {
   statistics_.batches = 0;
   nextBatch_ = 0;
   if (recursion_) tracesSkippedBefore_ = recursion_->skippedTraces();
-  if (mediaAround(settings_.camera) != cameraMedia_) uploadFrame();  // the scene has moved
 }
 
 void Renderer::setCamera(const scene::Camera& camera) {
   settings_.camera = camera;
-  sceneChanged();
+  restartAndUploadFrame();
 }
 
 void Renderer::setShutter(const std::optional<ShutterInterval>& shutter,
@@ -341,7 +341,7 @@ void Renderer::setShutter(const std::optional<ShutterInterval>& shutter,
   assert(!shutter || (shutter->close > shutter->open && !accumulates()));
   settings_.shutter = shutter;
   settings_.cameraAt = std::move(cameraAt);
-  sceneChanged();
+  restartAndUploadFrame();
 }
 
 void Renderer::setParameters(const program::ParameterValues& values) {
@@ -353,7 +353,7 @@ void Renderer::setParameters(const program::ParameterValues& values) {
   restart();
 }
 
-void Renderer::sceneChanged() {
+void Renderer::restartAndUploadFrame() {
   restart();
   uploadFrame();
 }
@@ -373,12 +373,12 @@ void Renderer::setSize(uvec2 size) {
   recursion_ = std::move(recursion);
   heat_ = std::move(heat);
   settings_ = std::move(settings);
-  sceneChanged();
+  restartAndUploadFrame();
 }
 
 void Renderer::setPlannedSamples(std::uint32_t count) {
   (accumulates() ? settings_.frameCount : settings_.plannedSamples) = count;
-  sceneChanged();
+  restartAndUploadFrame();
 }
 
 io::Image Renderer::image(std::size_t output) const {

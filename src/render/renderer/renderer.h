@@ -74,15 +74,14 @@ class Renderer {
   // Discards all samples or frames, for the next frame of an animation.
   void restart();
 
-  // Edits: each discards all samples. Before a change of the scene itself, call finish() or restart(). After DeviceScene::setTransforms,
-  // which can change addresses, call sceneChanged(); after setFrame and setMaterial, restart() is enough.
+  // Edits: each discards all samples. Before a change of the scene itself, call restart(). The next launch shows the changed scene
+  // (DeviceScene::revision).
   void setCamera(const scene::Camera& camera);
   // RenderSettings::shutter and cameraAt. With a shutter, each launch calls DeviceScene::setFrame; else the caller does, before
   // this function.
   void setShutter(const std::optional<ShutterInterval>& shutter, std::function<scene::Camera(double frame)> cameraAt);
   // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
   void setParameters(const program::ParameterValues& values);
-  void sceneChanged();
   // The whole image has this size from now on, without a region. Not for renderers with RenderSettings::instrument or
   // ray records. Throws UsageError and MemoryError, and then changes nothing.
   void setSize(uvec2 size);
@@ -139,13 +138,13 @@ class Renderer {
     samples,  // all but those of pixel centers
     centers,  // only those of pixel centers, without any counts
   };
+  void restartAndUploadFrame();
   void uploadFrame();
   void uploadFrame(const scene::Camera& camera, Stored stored);
   // Moves the scene and the camera to a frame of the animation, and waits for the launches in flight.
   void showTime(double frame, Stored stored);
   void showSample(std::uint32_t index, Stored stored);  // the time of a sample, if there is a shutter
   bool storesCenters() const;
-  Media mediaAround(const scene::Camera& camera) const;  // the solids that contain it
   bool storesMotion() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
   Target wholeRegion(std::uint32_t firstSample);
@@ -174,8 +173,8 @@ class Renderer {
   rt::ShaderBindingTable table_;
   Film film_;
   gpu::Buffer frameBuffer_;
-  Media cameraMedia_{};     // as in frameBuffer_
-  gpu::Buffer tileBuffer_;  // tiles of the latest adaptive batch
+  std::uint64_t shownRevision_ = 0;  // DeviceScene::revision() of frameBuffer_
+  gpu::Buffer tileBuffer_;           // tiles of the latest adaptive batch
   ParameterTextures parameterTextures_;
   gpu::Buffer parameterBuffer_;
   std::optional<InstrumentBuffer> instrument_;

@@ -361,6 +361,7 @@ void DeviceScene::keepPreviousPositions() {
 
 void DeviceScene::showFrame(double frame, bool withPrevious) {
   shownFrame_ = frame;
+  ++revision_;
   Stopwatch watch;
   const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), frame);
   const scene::Pose before = scene::poseAt(nodeAnimation_.get(), previousFrame());
@@ -436,6 +437,7 @@ void DeviceScene::updateLights() {
   const Stopwatch watch;
   lightBuilder_->build(topLevel_->worldFromObject(), lightTables_);
   uploadLightTable(lightTables_);
+  ++revision_;
   if (lightTables_.slots.size() > kKeptLights || lightTables_.lights.size() > kKeptLights) lightTables_ = {};
   frameStatistics_.lightSeconds += watch.seconds();
 }
@@ -445,6 +447,7 @@ void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
   for (const InstanceTransform& transform : transforms)
     topLevel_->setTransform(transform.instance, transform.worldFromObject);
   topLevel_->update();
+  ++revision_;
   if (std::ranges::any_of(transforms, [&](const InstanceTransform& t) { return lightBuilder_->hasLights(t.instance); }))
     lightsOutdated_ = true;
 }
@@ -479,6 +482,7 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
     table.integral = table.unscaledIntegral * environment.intensity;
   }
   showEnvironment(environment, table);
+  ++revision_;
   if (animatedEnvironment_)
     moveEnvironment(scene::poseAt(nodeAnimation_.get(), shownFrame_));
   else
@@ -507,6 +511,7 @@ bool DeviceScene::storeMaterial(std::size_t index, const scene::Material& materi
   if (!complete) return false;
   materialTable_.upload(std::as_bytes(std::span(&data, 1)), index * sizeof(data));
   cameraMedia_.setMaterial(index, material);
+  ++revision_;
   return true;
 }
 

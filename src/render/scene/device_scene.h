@@ -89,6 +89,8 @@ class DeviceScene {
   const Defines& defines() const { return defines_; }
   // Frame with the scene's addresses and environment. The renderer adds camera, film and outputs.
   const shared::Frame& frameTemplate() const { return frame_; }
+  // Changes whenever frameTemplate() or mediaAt() can give other results than before.
+  std::uint64_t revision() const { return revision_; }
   const DeviceSceneStatistics& statistics() const { return statistics_; }
 
   // Builds the TLAS for programs with this number of ray types, which the hit record offsets depend on.
@@ -100,8 +102,7 @@ class DeviceScene {
 
   // Moves the animated instances and lights to `frame`, and deforms meshes: updates vertices, BLASes, the instance
   // table, the TLAS, and the light tables if something that moves emits or an edit changed them. The addresses of moving
-  // lights do not change, so frameTemplate() stays valid. Blocks; no launch can be under way. The scene starts at
-  // frame 0.
+  // lights do not change. Blocks; no launch can be under way. The scene starts at frame 0.
   void setFrame(double frame, Previous previous = Previous::update);
   double frame() const { return shownFrame_; }
   // The frame of the previous instances and vertices: one before frame(), but a scene does not move before frame 0.
@@ -220,6 +221,7 @@ class DeviceScene {
   program::SceneFacts facts_;
   shared::Frame frame_{};
   Defines defines_;
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace quintet::render

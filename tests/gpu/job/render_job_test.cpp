@@ -4,6 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <map>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "job/film_store.h"
@@ -259,6 +262,67 @@ TEST_F(AnimatedJobTest, ReportsFramesThatMissTheTarget) {
   EXPECT_TRUE(result.earlierTargetMissed);
   ASSERT_EQ(recorder.warnings.size(), 1u);
   EXPECT_THAT(recorder.warnings[0], testing::HasSubstr("frame 0: the target error"));
+}
+
+// A solid that moves around the camera within a second, one that becomes a medium, and an environment that gets brighter.
+class MediumJobTest : public RenderJobTest {
+ protected:
+  MediumJobTest() {
+    const std::string glass =
+        "metallic = 0\nroughness = 0\nior = 1\ntransmission = 1\nthickness = 1\n"
+        "attenuation_color = [0.5, 0.25, 1]\nattenuation_distance = 2\n";
+    const std::string sky = "[environment]\ncolor = [1, 1, 1]\n";
+    write("moves", "[[material]]\nname = \"glass\"\n" + glass +
+                       cube("keyframes = [{ frame = 0, translate = [9, 0, 0] }, { frame = 24 }]\n") + sky);
+    write("becomes", "[[material]]\nname = \"glass\"\n" + glass +
+                         "keyframes = [{ frame = 0, transmission = 0 }, { frame = 24, transmission = 1 }]\n" +
+                         cube("") + sky);
+    write("sky", cube("translate = [9, 0, 0]\n") + sky +
+                     "keyframes = [{ frame = 0, intensity = 0 }, { frame = 24, intensity = 3 }]\n");
+  }
+  void write(const std::string& name, const std::string& text) {
+    writeFile(folder_ / (name + ".scene.toml"),
+              text + "[[camera]]\nlook_from = [0, 0, 0]\nlook_at = [0, 0, -1]\nfov = 1\n");
+  }
+  static std::string cube(const std::string& instance) {
+    return "[[mesh]]\nname = \"box\"\nshape = \"cube\"\n[[instance]]\nof = \"box\"\n" + instance;
+  }
+  RenderRequest requestFor(const std::string& scene) {
+    RenderRequest request = makeRequest(4);
+    request.scene = folder_ / (scene + ".scene.toml");
+    return request;
+  }
+  static std::vector<float> pixelOf(const RenderResult& result) {
+    const io::Image image = result.film->image(0);
+    const auto pixel = image.pixel<float>(3, 5);
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+  const quintet::test::TempFolder folder_;
+};
+
+TEST_F(MediumJobTest, EachWayToAFrameShowsItsMediumAndEnvironment) {
+  const float meter = std::sqrt(0.5f);
+  const std::map<std::string, std::vector<float>> expected{
+      {"moves", {meter, 0.5f, 1}}, {"becomes", {meter, 0.5f, 1}}, {"sky", {3, 3, 3}}};
+  for (const auto& [scene, color] : expected) {
+    SCOPED_TRACE(scene);
+    const auto isExpected = testing::Pointwise(testing::FloatNear(2e-3f), color);
+    RenderRequest request = requestFor(scene);
+    const auto job = makeJob(request, "pathtracer");
+    EXPECT_THAT(pixelOf(job->run(request.limits, observer_)), testing::Not(isExpected)) << "at the start";
+    job->setFrame(24);
+    EXPECT_THAT(pixelOf(job->run(request.limits, observer_)), isExpected) << "after setFrame()";
+    job->setFrame(0);
+    EXPECT_THAT(pixelOf(job->run(request.limits, observer_)), testing::Not(isExpected)) << "back at the start";
+    FrameRequest frames;
+    frames.seconds = 1.0;
+    for (const FrameRequest& way :
+         {frames, FrameRequest{.count = 1, .first = 24}, FrameRequest{.count = 2, .first = 23, .every = true}}) {
+      request.frames = way;
+      EXPECT_THAT(pixelOf(makeJob(request, "pathtracer")->run(request.limits, observer_)), isExpected)
+          << way.seconds.has_value() << way.every;
+    }
+  }
 }
 
 TEST_F(RenderJobTest, AStillSceneHasOneFrame) {
