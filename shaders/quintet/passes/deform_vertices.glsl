@@ -38,7 +38,7 @@ DeformMatrix blendedMatrix(DeformGeometry g, uint i) {
     const uvec2 joints = DeformUvec2Array(DeformSkinSetArray(g.skinSets).at[0].joints).at[i];
     return DeformMatrixArray(g.matrices).at[joints.x & 0xFFFFu];
   }
-  DeformMatrix blended = DeformMatrix(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)));
+  DeformMatrix blended = DeformMatrix(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), 0u);
   for (uint s = 0u; s < g.skinSetCount; ++s) {
     const DeformSkinSet set = DeformSkinSetArray(g.skinSets).at[s];
     const uvec2 joints = DeformUvec2Array(set.joints).at[i];
@@ -81,6 +81,7 @@ void main() {
                     dot(matrix.rows[2], vec4(position, 1.0)));
     normal = transformNormal(matrix, normal);
     tangent.xyz = transformDirection(matrix, tangent.xyz);
+    if (g.tangents != 0ul && isMirrored(g, i, kDeformMirrors)) tangent.w = -tangent.w;
   }
   DeformVec3Array(g.deformedPositions).at[i] = isNotFinite(position) ? undeformed : position;
   if ((g.flags & kDeformFaceNormals) != 0u) normal = vec3(0.0);

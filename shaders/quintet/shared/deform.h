@@ -23,11 +23,16 @@ struct DeformSkinSet {
 };
 QT_SHARED_SIZE(DeformSkinSet, 16);
 
+// DeformMatrix::flags
+QT_CONSTANT kDeformMirrors = 1u;   // negative determinant: turns the outside in (scene::mirrors)
+QT_CONSTANT kDeformMirrored = 2u;  // the triangles are wound for a matrix that mirrors: deform_winding.glsl compares both
+
 // Joint transform · inverse bind matrix, or the transform of a node.
 struct DeformMatrix {
   vec4 rows[3];  // of the affine matrix
+  uint flags;    // kDeform…
 };
-QT_SHARED_SIZE(DeformMatrix, 48);
+QT_SHARED_SIZE(DeformMatrix, 52);
 
 // DeformGeometry::flags
 QT_CONSTANT kDeformFaceNormals = 1u;  // the normals are those of the triangles, which have vertices of their own
@@ -50,9 +55,11 @@ struct DeformGeometry {
   uint vertexCount;
   uint targetCount;
   uint skinSetCount;
-  uint flags;  // kDeform…
+  uint flags;  // kDeformFaceNormals
+  uint triangleCount;
+  uint padding;
 };
-QT_SHARED_SIZE(DeformGeometry, 120);
+QT_SHARED_SIZE(DeformGeometry, 128);
 
 // Push constants of the passes that deform vertices.
 struct DeformPass {

@@ -6,6 +6,7 @@
 
 #include "base/stopwatch.h"
 #include "render/compute_pass.h"
+#include "scene/animation/deform.h"
 
 namespace quintet::render {
 namespace {
@@ -15,9 +16,17 @@ constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
 // Marks of the timer.
 enum Mark : std::uint32_t { kStart, kDeformed, kMeasured, kRefitted, kMarkCount };
 
-shared::DeformMatrix rowsOf(const mat4& matrix) {
+shared::DeformMatrix rowsOf(const mat4& matrix, std::uint32_t flags) {
   const mat4 rows = glm::transpose(matrix);
-  return {{rows[0], rows[1], rows[2]}};
+  return {{rows[0], rows[1], rows[2]}, flags};
+}
+
+// Of the joints, and of the node, which geometries without skin sets follow. None without a skin.
+std::vector<mat4> matricesOf(int skin, int node, const scene::NodeAnimation& animation, const scene::Pose& pose) {
+  if (skin == scene::kNone) return {};
+  std::vector<mat4> matrices = scene::jointMatrices(animation.skins[static_cast<std::size_t>(skin)], pose);
+  matrices.push_back(pose.worldFromNode[static_cast<std::size_t>(node)]);
+  return matrices;
 }
 
 std::vector<shared::TreeCostGeometry> costGeometries(const rt::BlasInput& input) {
@@ -54,13 +63,12 @@ DeformedMeshes::PoseBuffer DeformedMeshes::makePoseBuffer(gpu::Context& context,
   return pose;
 }
 
-void DeformedMeshes::add(const scene::Scene& scene, std::size_t index, const rt::BlasInput& input, rt::Blas& blas,
-                         GeometryUpload& upload) {
+void DeformedMeshes::add(const scene::Scene& scene, std::size_t index, const scene::Pose& pose,
+                         const rt::BlasInput& input, rt::Blas& blas, GeometryUpload& upload) {
   if (std::ranges::all_of(input.geometries, [](const auto& geometry) { return geometry.triangles.empty(); })) return;
   const scene::MeshDeformation& from = *scene.meshes[index].deformation;
-  std::size_t jointCount = 0;
-  if (from.skin != scene::kNone)
-    jointCount = scene.nodeAnimation->skins[static_cast<std::size_t>(from.skin)].joints.size();
+  const std::vector<mat4> matrices = matricesOf(from.skin, from.node, *scene.nodeAnimation, pose);
+  const std::size_t jointCount = matrices.empty() ? 0 : matrices.size() - 1;
   Mesh& mesh = meshes_.emplace_back();
   mesh.index = index;
   mesh.node = from.node;
@@ -69,17 +77,18 @@ void DeformedMeshes::add(const scene::Scene& scene, std::size_t index, const rt:
   mesh.blas = &blas;
   mesh.upload = &upload;
   mesh.pose = makePoseBuffer(context_, from, jointCount);
+  for (const mat4& matrix : matrices) mesh.mirrored.push_back(scene::mirrors(matrix));
   gpu::Uploader uploader(context_, kStagingBytes);
   const std::size_t first = upload.firstGeometry[index];
   for (std::size_t g = 0; g < from.geometries.size(); ++g) {
-    PoseAddresses pose;
-    pose.weights = mesh.pose.device.address() + mesh.pose.weightOffset;
+    PoseAddresses addresses;
+    addresses.weights = mesh.pose.device.address() + mesh.pose.weightOffset;
     if (from.skin != scene::kNone) {
-      pose.matrices = mesh.pose.device.address();
-      if (from.geometries[g].skinSets.empty()) pose.matrices += jointCount * sizeof(shared::DeformMatrix);
+      addresses.matrices = mesh.pose.device.address();
+      if (from.geometries[g].skinSets.empty()) addresses.matrices += jointCount * sizeof(shared::DeformMatrix);
     }
     mesh.geometries.emplace_back(context_, uploader, from.geometries[g], input.geometries[g].triangles,
-                                 upload.geometries[first + g], pose);
+                                 upload.geometries[first + g], addresses);
   }
   uploader.flush();
   prepareUpdates(mesh);
@@ -95,16 +104,19 @@ void DeformedMeshes::prepareUpdates(Mesh& mesh) {
   for (rt::GeometryInput& geometry : mesh.input.geometries) geometry.positions = {}, geometry.triangles = {};
 }
 
-void DeformedMeshes::writePose(const Mesh& mesh, const scene::NodeAnimation& animation, const scene::Pose& pose) const {
-  const auto node = static_cast<std::size_t>(mesh.node);
-  auto* matrices = reinterpret_cast<shared::DeformMatrix*>(mesh.pose.staging.mapped());
-  if (mesh.skin != scene::kNone) {
-    for (const mat4& matrix : scene::jointMatrices(animation.skins[static_cast<std::size_t>(mesh.skin)], pose))
-      *matrices++ = rowsOf(matrix);
-    *matrices = rowsOf(pose.worldFromNode[node]);
+void DeformedMeshes::writePose(Mesh& mesh, const scene::NodeAnimation& animation, const scene::Pose& pose) {
+  auto* to = reinterpret_cast<shared::DeformMatrix*>(mesh.pose.staging.mapped());
+  mesh.turns = false;
+  const std::vector<mat4> matrices = matricesOf(mesh.skin, mesh.node, animation, pose);
+  for (std::size_t i = 0; i < matrices.size(); ++i) {
+    const bool mirrors = scene::mirrors(matrices[i]);
+    to[i] =
+        rowsOf(matrices[i], (mirrors ? shared::kDeformMirrors : 0) | (mesh.mirrored[i] ? shared::kDeformMirrored : 0));
+    mesh.turns = mesh.turns || mirrors != mesh.mirrored[i];
+    mesh.mirrored[i] = mirrors;
   }
   auto* weights = reinterpret_cast<float*>(mesh.pose.staging.mapped() + mesh.pose.weightOffset);
-  const std::vector<float>& values = pose.weights[node];
+  const std::vector<float>& values = pose.weights[static_cast<std::size_t>(mesh.node)];
   for (std::size_t i = 0; i < mesh.pose.weightCount; ++i) weights[i] = i < values.size() ? values[i] : 0.0f;
 }
 
@@ -126,7 +138,10 @@ void DeformedMeshes::record(gpu::Commands& commands) {
   for (const Mesh& mesh : meshes_) commands.copy(mesh.pose.staging, mesh.pose.device, mesh.pose.staging.size());
   commands.barrier(gpu::Stage::all, gpu::Stage::compute);
   for (const Mesh& mesh : meshes_)
-    for (const GeometryDeformer& geometry : mesh.geometries) geometry.recordVertices(commands, passes_);
+    for (const GeometryDeformer& geometry : mesh.geometries) {
+      if (mesh.turns) geometry.recordWinding(commands, passes_);
+      geometry.recordVertices(commands, passes_);
+    }
   commands.barrier(gpu::Stage::compute, gpu::Stage::compute);
   for (const Mesh& mesh : meshes_)
     for (const GeometryDeformer& geometry : mesh.geometries) geometry.recordRepair(commands, passes_);
@@ -134,7 +149,8 @@ void DeformedMeshes::record(gpu::Commands& commands) {
   recordCosts(commands);
   timer_.mark(commands, kMeasured);
   commands.barrier(gpu::Stage::compute, gpu::Stage::accelerationStructureBuild);
-  for (const Mesh& mesh : meshes_) mesh.refit.record(commands);
+  for (const Mesh& mesh : meshes_)
+    if (!mesh.turns) mesh.refit.record(commands);
   timer_.mark(commands, kRefitted);
   commands.barrier(gpu::Stage::all, gpu::Stage::all);
   commands.toHost(gpu::Stage::compute);
@@ -159,7 +175,7 @@ void DeformedMeshes::build(Mesh& mesh) {
 void DeformedMeshes::setPose(const scene::NodeAnimation& animation, const scene::Pose& pose,
                              const std::function<void(std::size_t mesh)>& rebuilt) {
   Stopwatch watch;
-  for (const Mesh& mesh : meshes_) writePose(mesh, animation, pose);
+  for (Mesh& mesh : meshes_) writePose(mesh, animation, pose);
   statistics_.poseSeconds += watch.lap();
   context_.submitAndWait([&](gpu::Commands& commands) { record(commands); });
   statistics_.deformSeconds += timer_.seconds(kStart, kDeformed);
@@ -170,7 +186,7 @@ void DeformedMeshes::setPose(const scene::NodeAnimation& animation, const scene:
     Mesh& mesh = meshes_[m];
     shared::TreeCostNode root;
     std::memcpy(&root, roots_.mapped() + m * sizeof(root), sizeof(root));
-    if (mesh.cost.growth(root) <= rt::kMaxRefitGrowth) {
+    if (!mesh.turns && mesh.cost.growth(root) <= rt::kMaxRefitGrowth) {
       mesh.blas->setBounds({root.low, root.high});
       ++statistics_.refits;
       continue;

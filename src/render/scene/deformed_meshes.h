@@ -38,9 +38,10 @@ class DeformedMeshes {
   DeformedMeshes(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler);
 
   // Adds a mesh of the scene that has a deformation, after its BLAS was built from `input` with allowUpdate. Copies
-  // what it needs to the device. A mesh without triangles is not added. `blas` and `upload` must exist as long as this object.
-  void add(const scene::Scene& scene, std::size_t mesh, const rt::BlasInput& input, rt::Blas& blas,
-           GeometryUpload& upload);
+  // what it needs to the device. `pose`: that of the scene. A mesh without triangles is not added. `blas` and `upload`
+  // must exist as long as this object.
+  void add(const scene::Scene& scene, std::size_t mesh, const scene::Pose& pose, const rt::BlasInput& input,
+           rt::Blas& blas, GeometryUpload& upload);
 
   // Deforms all meshes and updates their BLASes. Blocks; the device must not be tracing. Calls `rebuilt` with the index
   // in the scene of each mesh whose BLAS was built again: its address and its primitive maps have changed.
@@ -68,12 +69,14 @@ class DeformedMeshes {
     rt::Blas* blas;
     GeometryUpload* upload;
     PoseBuffer pose;
+    std::vector<bool> mirrored;  // per matrix: it mirrors, and the triangles in memory are wound for that
+    bool turns = false;          // the frame to be shown changes `mirrored`, so that triangles change their winding
     std::vector<GeometryDeformer> geometries;
     rt::BlasRefit refit;
     TreeCost cost;
   };
   static PoseBuffer makePoseBuffer(gpu::Context& context, const scene::MeshDeformation& mesh, std::size_t jointCount);
-  void writePose(const Mesh& mesh, const scene::NodeAnimation& animation, const scene::Pose& pose) const;
+  static void writePose(Mesh& mesh, const scene::NodeAnimation& animation, const scene::Pose& pose);
   void prepareUpdates(Mesh& mesh);
   void record(gpu::Commands& commands);
   void recordCosts(gpu::Commands& commands) const;

@@ -278,6 +278,7 @@ void DeviceScene::buildBottomLevel(const scene::Scene& scene) {
 
 void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const rt::BlasInput> inputs,
                                     std::span<const std::size_t> meshOfInput) {
+  const scene::Pose pose = scene::poseAt(scene.nodeAnimation.get(), 0.0);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     if (!scene.meshes[meshOfInput[i]].deformation) continue;
     if (!deformed_) {
@@ -286,7 +287,7 @@ void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const r
       deformed_.emplace(context_, *set_, own ? *own : *options_.compiler);
     }
     const std::size_t mesh = meshOfInput[i];
-    deformed_->add(scene, mesh, inputs[i], blas_[i], geometry_);
+    deformed_->add(scene, mesh, pose, inputs[i], blas_[i], geometry_);
     for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
       deformedGeometries_.push_back({geometry_.firstGeometry[mesh] + g, inputs[i].geometries[g].positions.size()});
   }

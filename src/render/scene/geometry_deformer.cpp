@@ -71,14 +71,17 @@ Corners cornersOf(std::span<const uvec3> triangles, std::size_t vertexCount) {
 }  // namespace
 
 DeformPasses::DeformPasses(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler)
-    : vertices(makePass(context, set, compiler, "deform_vertices")),
+    : winding(makePass(context, set, compiler, "deform_winding")),
+      vertices(makePass(context, set, compiler, "deform_vertices")),
       repair(makePass(context, set, compiler, "deform_repair")) {}
 
 GeometryDeformer::GeometryDeformer(gpu::Context& context, gpu::Uploader& uploader,
                                    const scene::GeometryDeformation& deformation, std::span<const uvec3> triangles,
                                    const shared::GeometryData& target, const PoseAddresses& pose)
     : vertexCount_(static_cast<std::uint32_t>(deformation.positions.size())),
-      hasNormals_(!deformation.normals.empty()) {
+      triangleCount_(static_cast<std::uint32_t>(triangles.size())),
+      hasNormals_(!deformation.normals.empty()),
+      hasMatrices_(pose.matrices != 0) {
   Corners corners;
   if (hasNormals_) corners = cornersOf(triangles, deformation.positions.size());
   std::vector<shared::DeformTarget> targets(deformation.targets.size());
@@ -115,9 +118,14 @@ GeometryDeformer::GeometryDeformer(gpu::Context& context, gpu::Uploader& uploade
                  .vertexCount = vertexCount_,
                  .targetCount = static_cast<std::uint32_t>(targets.size()),
                  .skinSetCount = static_cast<std::uint32_t>(skinSets.size()),
-                 .flags = deformation.faceNormals ? shared::kDeformFaceNormals : 0};
+                 .flags = deformation.faceNormals ? shared::kDeformFaceNormals : 0,
+                 .triangleCount = triangleCount_};
   pass_.geometry = arrays.addressOf(geometry);
   arrays_ = arrays.upload(uploader);
+}
+
+void GeometryDeformer::recordWinding(gpu::Commands& commands, const DeformPasses& passes) const {
+  if (hasMatrices_) dispatchPass(*passes.winding, commands, std::as_bytes(std::span(&pass_, 1)), triangleCount_);
 }
 
 void GeometryDeformer::recordVertices(gpu::Commands& commands, const DeformPasses& passes) const {

@@ -19,7 +19,7 @@ namespace quintet::render {
 // The pipelines of all geometries.
 struct DeformPasses {
   DeformPasses(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler);
-  std::unique_ptr<gpu::ComputePipeline> vertices, repair;
+  std::unique_ptr<gpu::ComputePipeline> winding, vertices, repair;
 };
 
 // Where the values of the frame are on the device.
@@ -35,7 +35,9 @@ class GeometryDeformer {
   GeometryDeformer(gpu::Context& context, gpu::Uploader& uploader, const scene::GeometryDeformation& deformation,
                    std::span<const uvec3> triangles, const shared::GeometryData& target, const PoseAddresses& pose);
 
-  // Records the first pass: positions, and normals and tangents as far as they have a direction.
+  // Records the pass that turns the triangles of mirrored parts, if a matrix applies. The BLAS must then be built again.
+  void recordWinding(gpu::Commands& commands, const DeformPasses& passes) const;
+  // Records the first pass of the vertices: positions, and normals and tangents as far as they have a direction.
   void recordVertices(gpu::Commands& commands, const DeformPasses& passes) const;
   // Records the second pass, after a barrier of the stage compute.
   void recordRepair(gpu::Commands& commands, const DeformPasses& passes) const;
@@ -45,7 +47,9 @@ class GeometryDeformer {
   gpu::Buffer arrays_;
   shared::DeformPass pass_{};
   std::uint32_t vertexCount_ = 0;
+  std::uint32_t triangleCount_ = 0;
   bool hasNormals_ = false;
+  bool hasMatrices_ = false;
 };
 
 }  // namespace quintet::render

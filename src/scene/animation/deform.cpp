@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/animation/deform.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/parallel.h"
 
 namespace quintet::scene {
@@ -25,7 +28,34 @@ void transformVertex(Geometry& geometry, std::size_t i, const mat4& matrix) {
     geometry.tangents[i] = vec4(linear * vec3(geometry.tangents[i]), geometry.tangents[i].w);
 }
 
+// Whether the vertex has more than half of its weight from joints that mirror.
+bool isMirrored(std::span<const SkinSet> sets, const std::vector<bool>& mirroring, std::size_t i) {
+  float sum = 0.0f, mirrored = 0.0f;
+  for (const SkinSet& set : sets)
+    for (glm::length_t c = 0; c < 4; ++c) {
+      sum += set.weights[i][c];
+      if (mirroring[set.joints[i][c]]) mirrored += set.weights[i][c];
+    }
+  return std::isfinite(sum) && sum > 0.0f ? mirrored > 0.5f * sum : bool{mirroring[sets[0].joints[i].x]};
+}
+
+void swapWinding(uvec3& triangle) { std::swap(triangle.y, triangle.z); }
+
+void turnMirroredParts(Geometry& geometry, std::span<const SkinSet> sets, std::span<const mat4> matrices) {
+  std::vector<bool> mirroring;
+  for (const mat4& matrix : matrices) mirroring.push_back(mirrors(matrix));
+  if (std::ranges::find(mirroring, true) == mirroring.end()) return;
+  std::vector<bool> mirrored(geometry.positions.size());
+  for (std::size_t i = 0; i < mirrored.size(); ++i) mirrored[i] = isMirrored(sets, mirroring, i);
+  for (uvec3& t : geometry.triangles)
+    if (int{mirrored[t.x]} + int{mirrored[t.y]} + int{mirrored[t.z]} >= 2) swapWinding(t);
+  for (std::size_t i = 0; i < geometry.tangents.size(); ++i)
+    if (mirrored[i]) geometry.tangents[i].w *= -1.0f;
+}
+
 }  // namespace
+
+bool mirrors(const mat4& matrix) { return glm::determinant(glm::dmat3(mat3(matrix))) < 0.0; }
 
 void applyMorphTarget(Geometry& geometry, const MorphTarget& target, float weight) {
   addScaled(geometry.positions, target.positions, weight);
@@ -56,10 +86,14 @@ void applySkin(Geometry& geometry, std::span<const SkinSet> sets, std::span<cons
         for (std::size_t i = first; i < last; ++i) skin(i);
       },
       kVerticesPerTask);
+  turnMirroredParts(geometry, sets, matrices);
 }
 
 void transformVertices(Geometry& geometry, const mat4& matrix) {
   for (std::size_t i = 0; i < geometry.positions.size(); ++i) transformVertex(geometry, i, matrix);
+  if (!mirrors(matrix)) return;
+  std::ranges::for_each(geometry.triangles, swapWinding);
+  for (vec4& tangent : geometry.tangents) tangent.w *= -1.0f;
 }
 
 void applyTransform(Geometry& geometry, const mat4& matrix) {

@@ -169,6 +169,7 @@ void deformGeometry(const MeshDeformation& mesh, std::size_t index, const NodeAn
   out.positions = from.positions;
   out.normals = from.normals;
   out.tangents = from.tangents;
+  if (!from.triangles.empty()) out.triangles = from.triangles;
   const std::vector<float>& weights = pose.weights[node];
   for (std::size_t i = 0; i < std::min(weights.size(), from.targets.size()); ++i)
     if (weights[i] != 0.0f) applyMorphTarget(out, from.targets[i], weights[i]);

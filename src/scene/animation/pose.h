@@ -41,8 +41,8 @@ float lastFrame(const Scene&);
 // Matrices of the joints: world transform of the joint · inverse bind matrix.
 std::vector<mat4> jointMatrices(const Skin&, const Pose&);
 
-// Writes positions, normals and tangents of geometry `index` of the deformed mesh; the other arrays of `out` are
-// those of the mesh. The number of vertices does not depend on the pose. Normals and tangents are unit. A position that
+// Writes positions, normals, tangents and, with a skin, triangles of geometry `index` of the deformed mesh; the other arrays of
+// `out` are those of the mesh. The number of vertices does not depend on the pose. Normals and tangents are unit. A position that
 // is not finite is that of the undeformed vertex.
 void deformGeometry(const MeshDeformation&, std::size_t index, const NodeAnimation&, const Pose&, Geometry& out);
 

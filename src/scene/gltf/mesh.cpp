@@ -278,7 +278,7 @@ void readDeformation(GeometryDeformation& deformation, const PrimitiveReader& re
 }
 
 // Brings the deformation into the order of the vertices of the geometry, and adds the undeformed attributes.
-void finishDeformation(GeometryDeformation& deformation, Geometry& geometry, bool faceNormals) {
+void finishDeformation(GeometryDeformation& deformation, Geometry& geometry, bool faceNormals, bool skinned) {
   const auto gather = [&](auto& values) {
     if (values.empty()) return;
     std::remove_reference_t<decltype(values)> gathered;
@@ -299,6 +299,7 @@ void finishDeformation(GeometryDeformation& deformation, Geometry& geometry, boo
   deformation.normals = geometry.normals;
   deformation.tangents = geometry.tangents;
   deformation.faceNormals = faceNormals;
+  if (skinned) deformation.triangles = geometry.triangles;
   geometry.fileVertices = {};
 }
 
@@ -354,7 +355,8 @@ GeometryResult readGeometry(const Document& document, const std::vector<Material
   dropUnusedVertices(geometry);
   const bool flat = geometry.normals.empty();
   if (geometry.material != kNone) addTangents(geometry, materials[static_cast<std::size_t>(geometry.material)]);
-  if (deformation.animated) finishDeformation(result.deformation, geometry, flat && !geometry.normals.empty());
+  if (deformation.animated)
+    finishDeformation(result.deformation, geometry, flat && !geometry.normals.empty(), deformation.jointCount > 0);
   result.geometry = std::move(geometry);
   return result;
 }

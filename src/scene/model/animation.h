@@ -102,6 +102,8 @@ struct GeometryDeformation {
   std::vector<vec3> normals;
   std::vector<vec4> tangents;
   bool faceNormals = false;  // the normals are those of the triangles, which have vertices of their own
+  // Of a mesh with a skin, before joints mirror them (animation/deform.h). Else empty: the triangles do not change.
+  std::vector<uvec3> triangles;
   std::vector<MorphTarget> targets;
   std::vector<SkinSet> skinSets;
 };

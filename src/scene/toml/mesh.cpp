@@ -143,8 +143,6 @@ void readMesh(SceneTomlContext& context, const TomlValue& table) {
   geometry.material = material == kNone ? context.defaultMaterial() : material;
   const mat4 transform = readTransform(reader);
   if (transform != mat4(1.0f)) applyTransform(geometry, transform);
-  if (glm::determinant(mat3(transform)) < 0.0f)
-    for (uvec3& t : geometry.triangles) std::swap(t.y, t.z);  // the outside of a mirrored mesh stays outside
   for (const vec3& p : geometry.positions)
     if (!isFinite(p)) reader.fail(*source, fmt::format("{} is too large", reader.what()));
   const std::size_t mesh = static_cast<std::size_t>(context.meshFor(reader, name, false));

@@ -45,6 +45,31 @@ std::vector<DeviceVertex> readVertices(const render::DeviceScene& device, const 
                                   inputs, inputs.size(), options);
 }
 
+// The triangles of all geometries on the device, in the order of the scene.
+std::vector<uvec3> readTriangles(const render::DeviceScene& device, const scene::Scene& scene) {
+  std::vector<uvec2> inputs;  // geometry and triangle
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
+    for (std::uint32_t i = 0; i < scene.meshes[m].geometries[0].triangles.size(); ++i) inputs.push_back({m, i});
+  ComputeOptions options;
+  options.addresses[0] = device.frameTemplate().geometries;
+  return runCompute<uvec3>(R"(
+    #include <quintet/shared/frame.h>
+    layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Geometries { GeometryData at[]; };
+    layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Uvec3s { uvec3 at[]; };
+    #define In uvec2
+    #define Out uvec3
+    Out run(uint index, In value) { return Uvec3s(Geometries(testAddress(0)).at[value.x].triangles).at[value.y]; }
+  )",
+                           inputs, inputs.size(), options);
+}
+
+std::vector<uvec3> trianglesOf(const scene::Scene& scene) {
+  std::vector<uvec3> all;
+  for (const scene::Mesh& mesh : scene.meshes)
+    all.insert(all.end(), mesh.geometries[0].triangles.begin(), mesh.geometries[0].triangles.end());
+  return all;
+}
+
 // The largest differences of all vertices.
 struct Differences {
   double position = 0;  // relative to 1 + the length
@@ -87,6 +112,7 @@ void expectHostVertices(const scene::Scene& scene) {
     EXPECT_LT(found.position, 2e-5) << frame;
     EXPECT_LT(found.normal, 1e-4) << frame;
     EXPECT_LT(found.tangent, 1e-4) << frame;
+    EXPECT_EQ(readTriangles(device, scene), trianglesOf(posed)) << frame;
   }
 }
 
@@ -108,6 +134,29 @@ TEST(Deformation, EqualsThatOfTheHost) {
         scene.addMesh(options);
       }
   expectHostVertices(scene.build());
+}
+
+// Joints that mirror at some time, or a part of the mesh: the winding and the handedness of tangents change with the frame.
+TEST(Deformation, TurnsMirroredPartsAsTheHost) {
+  DeformedScene scene(6);
+  const vec3 plain(1.0f), mirrored(1.0f, -1.0f, 1.0f);
+  const int skins[] = {scene.addSkin(4, {plain, plain}, mirrored), scene.addSkin(4, {mirrored, mirrored}, plain),
+                       scene.addSkin(6, {plain, mirrored}, plain), scene.addSkin(6, {mirrored, plain}, mirrored)};
+  for (const int skin : skins) {
+    scene.addMesh({.skin = skin, .skinSets = 1, .tangents = true});
+    scene.addMesh({.targets = 1, .skin = skin, .skinSets = 2, .normals = false});
+    scene.addMesh({.skin = skin, .skinSets = 1, .faceNormals = true});
+  }
+  const scene::Scene built = scene.build();
+  const std::vector<uvec3> atStart = trianglesOf(built);
+  std::size_t turned = 0;
+  scene::Scene posed = built;
+  scene::applyPose(posed, scene::poseAt(built.nodeAnimation.get(), 24.0));
+  const std::vector<uvec3> atEnd = trianglesOf(posed);
+  for (std::size_t i = 0; i < atStart.size(); ++i) turned += atStart[i] != atEnd[i];
+  EXPECT_GT(turned, atStart.size() / 2);
+  EXPECT_LT(turned, atStart.size());
+  expectHostVertices(built);
 }
 
 // Targets displace attributes that the geometry does not have, and the other way round.

@@ -27,7 +27,7 @@ void DeformedScene::addChannel(int node, AnimatedProperty property, std::vector<
   animation_.animation.channels.push_back({node, property, animation_.animation.samplers.size() - 1});
 }
 
-int DeformedScene::addSkin(std::size_t joints, const vec3& scale) {
+int DeformedScene::addSkin(std::size_t joints, const std::array<vec3, 2>& first, const vec3& last) {
   const int root = addNode();
   addChannel(root, AnimatedProperty::translation, {0, 0, 0, 1, 0.5f, -0.5f});
   scene::Skin& skin = animation_.skins.emplace_back();
@@ -37,7 +37,7 @@ int DeformedScene::addSkin(std::size_t joints, const vec3& scale) {
     std::vector<float> rotations, translations, scales;
     for (int key = 0; key < 2; ++key) {
       const quat q = glm::normalize(quat(1.0f, vector(0.4f)));
-      const vec3 t = vector(1.0f), s = scale * (1.0f + vector(0.3f));
+      const vec3 t = vector(1.0f), s = (key == 0 ? first[j % 2] : last) * (1.0f + vector(0.3f));
       rotations.insert(rotations.end(), {q.x, q.y, q.z, q.w});
       translations.insert(translations.end(), {t.x, t.y, t.z});
       scales.insert(scales.end(), {s.x, s.y, s.z});
@@ -79,6 +79,7 @@ scene::GeometryDeformation DeformedScene::deformation(const scene::Geometry& geo
   deformation.normals = geometry.normals;
   deformation.tangents = geometry.tangents;
   deformation.faceNormals = options.faceNormals;
+  if (options.skin >= 0) deformation.triangles = geometry.triangles;
   const auto displacements = [&](bool present) {
     std::vector<vec3> values(present ? count : 0);
     for (vec3& value : values) value = vector(0.3f);

@@ -3,6 +3,7 @@
 #ifndef QUINTET_TESTS_GPU_RENDER_DEFORMED_SCENE_H
 #define QUINTET_TESTS_GPU_RENDER_DEFORMED_SCENE_H
 
+#include <array>
 #include <cstdint>
 #include <random>
 
@@ -27,7 +28,9 @@ class DeformedScene {
   explicit DeformedScene(std::uint32_t seed) : random_(seed) {}
 
   // Adds a skin whose joints turn, move and change their size. `scale`: of the joints at rest; negative values mirror.
-  int addSkin(std::size_t joints, const vec3& scale);
+  int addSkin(std::size_t joints, const vec3& scale) { return addSkin(joints, {scale, scale}, scale); }
+  // The same, with the scales at 0 s of even and odd joints, and that of all joints at 1 s.
+  int addSkin(std::size_t joints, const std::array<vec3, 2>& first, const vec3& last);
   // Adds a mesh with one geometry, and its instance.
   void addMesh(const DeformedMeshOptions& options);
   scene::Scene build();

@@ -176,10 +176,10 @@ GPU_FIELDS(CoverageSlot, id, samples);
 GPU_FIELDS(FilmTile, x, y, drawn, batch);
 GPU_FIELDS(DeformTarget, positions, normals, tangents);
 GPU_FIELDS(DeformSkinSet, joints, weights);
-GPU_FIELDS(DeformMatrix, rows);
+GPU_FIELDS(DeformMatrix, rows, flags);
 GPU_FIELDS(DeformGeometry, positions, normals, tangents, deformedPositions, deformedNormals, deformedTangents, targets,
-           skinSets, triangles, firstCorners, corners, weights, matrices, vertexCount, targetCount, skinSetCount,
-           flags);
+           skinSets, triangles, firstCorners, corners, weights, matrices, vertexCount, targetCount, skinSetCount, flags,
+           triangleCount, padding);
 GPU_FIELDS(DeformPass, geometry);
 GPU_FIELDS(TreeCostNode, low, high, cost);
 GPU_FIELDS(TreeCostGeometry, positions, triangles, first, padding);
