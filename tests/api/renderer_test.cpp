@@ -174,6 +174,23 @@ TEST_F(ApiRenderer, MovesLamps) {
   EXPECT_EQ(image(), rendered(scene_));
 }
 
+// A cutoff above 1 hides a surface, and a lower one shows it again.
+TEST_F(ApiRenderer, HidesSurfacesByTheCutoff) {
+  const std::vector<float> before = image();
+  for (const int index : {0, 2}) {
+    Material material = scene_.material(index);
+    material.alphaMode = AlphaMode::mask;
+    for (const float cutoff : {1.5f, 1.0f, 2.0f}) {
+      material.alphaCutoff = cutoff;
+      renderer_.setMaterial(index, material);
+      scene_.setMaterial(index, material);
+      const std::vector<float> edited = image();
+      EXPECT_EQ(edited, rendered(scene_)) << index << ' ' << cutoff;
+      EXPECT_EQ(edited != before, index == 2 || cutoff > 1.0f) << index << ' ' << cutoff;
+    }
+  }
+}
+
 TEST_F(ApiRenderer, MovesInstancesSeveralTimes) {
   for (const float x : {0.1f, 0.2f, 0.3f}) {
     for (const int instance : {1, 2}) {

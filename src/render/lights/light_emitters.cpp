@@ -8,6 +8,7 @@
 #include "io/color.h"
 #include "render/lights/luminance.h"
 #include "scene/geometry/tangents.h"
+#include "scene/model/surface_class.h"
 
 namespace quintet::render {
 namespace {
@@ -278,9 +279,12 @@ void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, c
 // The material with its largest emission during the animation, so that each triangle that can emit is a light.
 scene::Material brightestState(const scene::Scene& scene, std::size_t material) {
   scene::Material brightest = scene.materials[material];
-  if (material < scene.materialStates.size())
+  if (material < scene.materialStates.size() && !scene.materialStates[material].empty()) {
     for (const scene::Material& state : scene.materialStates[material])
       brightest.emissive = glm::max(brightest.emissive, state.emissive);
+  } else if (scene::isInvisible(brightest)) {
+    brightest.emissive = vec3(0.0f);
+  }
   return brightest;
 }
 

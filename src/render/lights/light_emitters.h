@@ -28,7 +28,7 @@ struct Emitter {
   std::size_t count() const { return luminance.size(); }
 };
 
-// The emitters of a scene. Unlit materials and CSG trees are not emitters.
+// The emitters of a scene. Unlit and invisible materials and CSG trees are not emitters.
 class Emitters {
  public:
   explicit Emitters(const scene::Scene& scene) { update(scene); }

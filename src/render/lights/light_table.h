@@ -49,7 +49,7 @@ inline constexpr std::size_t kMaxTriangleLights = std::size_t{1} << 23;
 // or solid, with the mean L of its texture. Intensity in the tree: I for point and spot lights; area·L for a triangle
 // and a quarter of it for a solid; the irradiance of a directional light; a quarter of ∫L for the environment.
 //
-// Unlit materials and CSG trees are not lights; only BSDF sampling finds their emission. If the emissive instance
+// Unlit and invisible materials and CSG trees are not lights; only BSDF sampling finds their emission. If the emissive instance
 // geometries have more than `maxTriangleLights` triangles in total, the largest of them are left to BSDF sampling, too.
 // Any table that contains all lights gives an unbiased image; the table affects noise only.
 class LightTableBuilder {

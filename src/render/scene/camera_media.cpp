@@ -14,6 +14,11 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
+// No ray can leave or enter a solid whose surface is invisible.
+bool isVisibleMedium(const scene::Material& material) {
+  return scene::isMedium(material) && !scene::isInvisible(material);
+}
+
 Bounds3 boundsOf(std::span<const vec3> positions) {
   Bounds3 bounds;
   for (const vec3& p : positions) bounds.extend(p);
@@ -32,7 +37,7 @@ double volumeOf(const Bounds3& bounds) {
 }  // namespace
 
 CameraMedia::CameraMedia(const scene::Scene& scene, Fetch fetch) : fetch_(std::move(fetch)) {
-  for (const scene::Material& material : scene.materials) isMedium_.push_back(scene::isMedium(material));
+  for (const scene::Material& material : scene.materials) isMedium_.push_back(isVisibleMedium(material));
   for (const scene::Mesh& mesh : scene.meshes) {
     Mesh& copy = meshes_.emplace_back();
     copy.deformed = mesh.deformation != nullptr;
@@ -51,7 +56,7 @@ CameraMedia::CameraMedia(const scene::Scene& scene, Fetch fetch) : fetch_(std::m
 }
 
 void CameraMedia::setMaterial(std::size_t index, const scene::Material& material) {
-  isMedium_[index] = scene::isMedium(material);
+  isMedium_[index] = isVisibleMedium(material);
 }
 
 void CameraMedia::deform() {

@@ -64,7 +64,7 @@ class CameraMedia {
   void findInSets(const Mesh& mesh, const glm::dvec3& point, double scale, std::vector<Found>& found) const;
 
   Fetch fetch_;
-  std::vector<bool> isMedium_;  // per material
+  std::vector<bool> isMedium_;  // per material: a medium, and not invisible
   std::vector<Mesh> meshes_;
   std::vector<int> meshOfInstance_;  // scene::kNone for instances that rays cannot hit
 };

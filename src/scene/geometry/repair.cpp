@@ -138,6 +138,7 @@ std::size_t repairUvsAndColors(Geometry& geometry) {
   repaired += countIf(geometry.colors, [](vec4& color) {
     const bool finite = isFinite(vec3(color)) && std::isfinite(color.w);
     color = finite ? glm::max(color, vec4(0.0f)) : vec4(1.0f);
+    color.w = std::min(color.w, 1.0f);
     return !finite;
   });
   return repaired;

@@ -7,9 +7,10 @@
 namespace quintet::scene {
 namespace {
 
+// Whether parts of the surface can be missing or transparent, without the alpha of vertex colors.
 bool canHaveAlpha(const Scene& scene, const Material& m) {
   if (m.alphaMode == AlphaMode::opaque) return false;
-  if (m.baseColor.a < 1.0f) return true;
+  if (m.baseColor.a < 1.0f || isInvisible(m)) return true;
   if (!m.baseColorTexture.used()) return false;
   const int image = scene.textures[static_cast<std::size_t>(m.baseColorTexture.texture)].image;
   return image != kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
@@ -45,6 +46,11 @@ bool needsAlphaTest(const Scene& scene, const Geometry& geometry) {
 
 bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set) {
   return anyMaterial(scene, set, [&](const Material& m) { return canHaveAlpha(scene, m); });
+}
+
+bool isInvisible(const Material& m) {
+  if (m.alphaMode == AlphaMode::mask) return m.baseColor.a < m.alphaCutoff;
+  return m.alphaMode == AlphaMode::blend && m.baseColor.a <= 0.0f;
 }
 
 bool isPane(const Material& m) {

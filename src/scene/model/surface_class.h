@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Classes of surfaces by the effect of their material on a ray, which decide the any-hit shaders that a geometry needs:
 //   alpha-tested     coverage below 1 is possible (alpha mode mask or blend)
+//   invisible        the coverage is 0 everywhere
 //   pane             thin-walled (KHR_materials_transmission with thickness 0) and smooth, so that light can pass
 //                    straight through, such as window glass
 //   medium           the boundary of a closed solid that light enters, such as glass or water
@@ -17,9 +18,12 @@ namespace quintet::scene {
 // A lobe with alpha = roughness² below 5e-4 (kDeltaAlpha) is a delta lobe; rounded up.
 inline constexpr float kPaneAlpha = 5.001e-4f;
 
-// True if the alpha mode is mask or blend and the alpha can be below 1.
+// True if the alpha mode is mask or blend and the alpha can be below 1, or below a cutoff above 1.
 bool needsAlphaTest(const Scene& scene, const Geometry& geometry);
 bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set);
+
+// True if the surface is missing everywhere, whatever its textures and vertex colors: they can only reduce the alpha.
+bool isInvisible(const Material& material);
 
 // True if the material is a pane, at least in parts: a texture can vary the roughness.
 bool isPane(const Material& material);

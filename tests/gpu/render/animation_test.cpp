@@ -271,6 +271,19 @@ keyframes = [{ time = 0, intensity = 0 }, { time = 0.5, intensity = 2, rotation 
   expectHostPoses(scene, {6, 12, 24}, view);
 }
 
+// Nothing else has alpha, and the material is opaque at the start.
+TEST(Animation, PointersHideMaskedMaterials) {
+  AnimationBuilder builder = movingTriangle();
+  builder.add("materials", {{"alphaMode", "MASK"}});
+  builder.add("materials", Json::object());
+  builder.primitive()["material"] = 0;
+  builder.add("meshes", builder.root["meshes"][0]);
+  builder.primitive(1)["material"] = 1;
+  builder.add("nodes", {{"mesh", 1}, {"translation", {0, 1, 0}}});
+  builder.addPointer("/materials/0/alphaCutoff", {0, 1}, {0.5f, 1.5f}, "SCALAR");
+  expectHostPoses(builder.loadAnimated(), {6, 18, 3});
+}
+
 TEST(Animation, PointersChangeLightsAndVisibility) {
   AnimationBuilder builder = movingTriangle();
   builder.root["extensionsUsed"] = {"KHR_lights_punctual"};

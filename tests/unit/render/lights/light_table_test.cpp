@@ -305,6 +305,20 @@ TEST(LightTable, HiddenInstancesHaveNoLights) {
   EXPECT_NEAR(table.entries[0].probability, 0.5, 1e-6);
 }
 
+// A surface that is missing everywhere emits nothing, unless an animation can show it.
+TEST(LightTable, InvisibleMaterialsAreNoLights) {
+  scene::Scene scene = squares();
+  scene.instances = {instanceOf(1)};
+  scene::Material& material = scene.materials[static_cast<std::size_t>(scene.meshes[1].geometries[0].material)];
+  material.alphaMode = scene::AlphaMode::mask;
+  material.alphaCutoff = 1.0f;
+  EXPECT_EQ(buildLightTable(scene, {}).lights.size(), 2u) << "an alpha equal to the cutoff is visible";
+  material.alphaCutoff = 1.01f;
+  EXPECT_TRUE(buildLightTable(scene, {}).lights.empty());
+  scene.materialStates.assign(scene.materials.size(), {material});
+  EXPECT_EQ(buildLightTable(scene, {}).lights.size(), 2u);
+}
+
 TEST(LightTable, ScalesPowerWithWorldArea) {
   scene::Scene scene = squares();
   const mat4 mirrored = glm::scale(mat4(1.0f), vec3(-1.0f, 3.0f, 1.0f));

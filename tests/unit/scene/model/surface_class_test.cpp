@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace quintet::test {
 namespace {
 
@@ -49,6 +51,42 @@ TEST(SurfaceClass, DependsOnAlphaModeAndAlpha) {
   EXPECT_EQ(classOf(withMaterial(m)), (Class{true, false, true}));
   m.baseColor.a = 1.0f;
   EXPECT_EQ(classOf(withMaterial(m)), (Class{false, false, false}));
+}
+
+// No alpha reaches a cutoff above 1, so the surface is missing. An alpha equal to the cutoff is visible.
+TEST(SurfaceClass, DependsOnTheCutoff) {
+  Material m;
+  m.alphaMode = AlphaMode::mask;
+  m.alphaCutoff = 1.0f;
+  EXPECT_EQ(classOf(withMaterial(m)), (Class{false, false, false}));
+  EXPECT_FALSE(scene::isInvisible(m));
+  m.alphaCutoff = std::nextafter(1.0f, 2.0f);
+  EXPECT_EQ(classOf(withMaterial(m)), (Class{true, false, false}));
+  EXPECT_TRUE(scene::isInvisible(m));
+  scene::Scene animated = withMaterial(Material{m});
+  animated.materials[0].alphaCutoff = 0.5f;
+  EXPECT_FALSE(classOf(animated).alpha);
+  animated.materialStates = {{m}};
+  EXPECT_TRUE(classOf(animated).alpha) << "at some time";
+  m.alphaMode = AlphaMode::opaque;
+  EXPECT_EQ(classOf(withMaterial(m)), (Class{false, false, false}));
+  EXPECT_FALSE(scene::isInvisible(m));
+}
+
+TEST(SurfaceClass, InvisibleMaterialsCoverNothing) {
+  Material m;
+  m.alphaMode = AlphaMode::blend;
+  m.baseColor.a = 0.01f;
+  EXPECT_FALSE(scene::isInvisible(m));
+  m.baseColor.a = 0.0f;
+  EXPECT_TRUE(scene::isInvisible(m));
+  m.alphaMode = AlphaMode::mask;
+  m.alphaCutoff = 0.0f;
+  EXPECT_FALSE(scene::isInvisible(m)) << "0 is not below 0";
+  m.alphaCutoff = 0.01f;
+  EXPECT_TRUE(scene::isInvisible(m));
+  m.baseColor.a = 0.01f;
+  EXPECT_FALSE(scene::isInvisible(m));
 }
 
 TEST(SurfaceClass, DependsOnTheAlphaChannelOfTheTexture) {
