@@ -4,11 +4,13 @@
 // which nothing is reported. The device of these tests has all defects of docs/design/quirks.md.
 //
 // tests/check/known_misses.txt and known_false_alarms.txt list the programs for which the check is wrong today. The
-// tests fail if a listed program is reported correctly, so the lists stay true.
+// tests fail if a listed program is reported correctly, so the lists stay true. tests/check/messages.txt has the messages, so that
+// a wrong number or name in one is noticed. tests/check/update_known writes all three.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -95,6 +97,25 @@ std::set<std::string> expectedOf(const Files& files) {
   return result;
 }
 
+// The lines of messages.txt for a program: its name, a tab, and a message with its notes.
+std::vector<std::string> expectedMessages(const std::string& program) {
+  std::istringstream lines(readTextFile(kCheck / "messages.txt"));
+  std::vector<std::string> result;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(program + '\t')) result.push_back(line);
+  return result;
+}
+
+std::vector<std::string> messagesOf(const std::string& program, const std::vector<Diagnostic>& diagnostics) {
+  std::vector<std::string> result;
+  for (const Diagnostic& d : diagnostics) {
+    std::string& line = result.emplace_back(program + '\t' + d.text);
+    for (const auto& note : d.related) line += " | " + note.text;
+    std::ranges::replace(line, '\n', ' ');
+  }
+  return result;
+}
+
 CheckResult checkProgram(const Files& files) {
   DeviceLimits limits;
   limits.defects.changesNestedBuiltIns = limits.defects.corruptsHitAttributes = true;
@@ -106,6 +127,15 @@ CheckResult checkProgram(const Files& files) {
                facts ? &*facts : nullptr, limits);
 }
 
+// Checked once for all tests of this process.
+const CheckResult& checkMistake(const std::string& name) {
+  static std::map<std::string, CheckResult> results;
+  if (const auto known = results.find(name); known != results.end()) return known->second;
+  Files files;
+  readFolder(kMistakes / name, files);
+  return results.emplace(name, checkProgram(files)).first->second;
+}
+
 class Mistakes : public testing::TestWithParam<std::string> {};
 
 TEST_P(Mistakes, AreReportedInTheMarkedLines) {
@@ -114,7 +144,7 @@ TEST_P(Mistakes, AreReportedInTheMarkedLines) {
   const std::set<std::string> expected = expectedOf(files);
   ASSERT_FALSE(expected.empty()) << "no line has an EXPECT mark";
   for (const std::string& line : expected) EXPECT_EQ(line.substr(0, 4), GetParam().substr(0, 4));
-  const CheckResult result = checkProgram(files);
+  const CheckResult& result = checkMistake(GetParam());
   std::set<std::string> reported;
   for (const Diagnostic& d : result.diagnostics) {
     reported.insert(fmt::format("{} {}:{}", d.id, fs::path(d.file).filename().string(), d.line));
@@ -128,6 +158,31 @@ TEST_P(Mistakes, AreReportedInTheMarkedLines) {
   }
   EXPECT_EQ(reported, expected) << textOf(result);
 }
+
+void expectMessages(const std::string& program) {
+  const std::vector<std::string> messages = messagesOf(program, checkMistake(program).diagnostics);
+  if (messages == expectedMessages(program)) return;
+  for (const std::string& line : messages) ADD_FAILURE() << "\nmessages.txt: " << line;
+}
+
+TEST_P(Mistakes, HaveTheirMessages) { expectMessages(GetParam()); }
+
+// The programs whose messages contain numbers, for the short tests.
+std::vector<std::string> programsWithNumbers() {
+  static const std::regex kNumber("\t.*(^|[^A-Za-z0-9_.])[0-9]");
+  std::istringstream lines(readTextFile(kCheck / "messages.txt"));
+  std::set<std::string> names;
+  for (std::string line; std::getline(lines, line);)
+    if (std::regex_search(line, kNumber)) names.insert(line.substr(0, line.find('\t')));
+  return {names.begin(), names.end()};
+}
+
+class NumbersInMessages : public testing::TestWithParam<std::string> {};
+
+TEST_P(NumbersInMessages, AreThoseOfTheProgram) { expectMessages(GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(Corpus, NumbersInMessages, testing::ValuesIn(programsWithNumbers()),
+                         [](const auto& test) { return test.param; });
 
 TEST_P(Mistakes, AreNotReportedAfterRepair) {
   Files files;

@@ -360,19 +360,22 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
     return report.addOncePerLine("Q713", location,
                                  "the result is stored at gl_LaunchIDEXT.xy, but a launch is a part of the image; the "
                                  "pixel is launchPixel()");
-  const bool xScaled = x.x && !x.y && x.factor != 1.0, yScaled = y.y && !y.x && y.factor != 1.0;
-  if ((xScaled && x.factor > 1.0) || (yScaled && y.factor > 1.0))
+  // 1 for an axis that is not scaled, or not made of its own coordinate alone.
+  const double factors[] = {x.x && !x.y ? x.factor : 1.0, y.y && !y.x ? y.factor : 1.0};
+  const auto isMultiplied = [](double factor) { return factor > 1.0; };
+  const auto isDivided = [](double factor) { return factor > 0.0 && factor < 1.0; };
+  if (const auto* const factor = std::ranges::find_if(factors, isMultiplied); factor != std::end(factors))
     report.addOncePerLine(
         "Q713", location,
         fmt::format("the result is stored at the pixel times {}, which is outside of the image for most "
                     "pixels",
-                    xScaled ? x.factor : y.factor));
-  else if ((xScaled && x.factor > 0.0) || (yScaled && y.factor > 0.0))
+                    *factor));
+  else if (const auto* const part = std::ranges::find_if(factors, isDivided); part != std::end(factors))
     report.addOncePerLine(
         "Q713", location,
         fmt::format("the result is stored at the pixel divided by {}, so several invocations store to "
                     "the same pixel",
-                    1.0 / (xScaled ? x.factor : y.factor)));
+                    1.0 / *part));
 }
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
