@@ -192,6 +192,77 @@ TEST(SurfaceShading, AppliesNormalMapsInTheTangentFrame) {
   }
 }
 
+struct Frame {
+  vec3 normal, tangent, bitangent;  // of the front side
+  vec2 uv;
+};
+
+std::vector<Frame> framesOf(const scene::Scene& scene, const std::vector<Query>& points) {
+  const LightScene device(scene, {});
+  return runCompute<Frame>(R"(
+    #include <quintet/surface.glsl>
+    struct Query { vec2 barycentric; vec3 wo; };
+    struct Answer { vec3 normal, tangent, bitangent; vec2 uv; };
+    #define In Query
+    #define Out Answer
+    Answer run(uint index, Query q) {
+      HitPayload hit;
+      hit.t = 1.0;
+      hit.instance = hit.geometry = hit.primitive = 0u;
+      hit.barycentric = q.barycentric;
+      const Surface s = fetchSurface(hit, q.wo);
+      return Answer(s.frontFace ? s.shadingNormal : -s.shadingNormal, s.tangent, s.bitangent, s.uvs[0] + s.uvs[1]);
+    }
+  )",
+                           points, points.size(), device.options());
+}
+
+// Without tangents, and with tangents along the normal: the frame is orthonormal, right-handed, and the same from both sides.
+// Missing texture coordinates are 0.
+TEST(SurfaceShading, MakesFramesWithoutTangents) {
+  const mat4 turned = glm::rotate(mat4(1.0f), kPi, vec3(1, 0, 0));
+  std::vector<Case> cases = transforms();
+  cases.push_back({"axes", mat4(1.0f)});
+  cases.push_back({"mirrored axes", glm::scale(mat4(1.0f), vec3(-1, 1, 1))});
+  cases.push_back({"turned", turned});
+  cases.push_back({"turned and mirrored", turned * glm::scale(mat4(1.0f), vec3(1, -1, 1))});
+  std::vector<Query> points = queries();
+  const std::size_t count = points.size();
+  for (std::size_t i = 0; i < count; ++i) points.push_back({points[i].barycentric, -points[i].wo});
+  for (const Case& c : cases)
+    for (const char* kind : {"smooth", "flat", "tangents along the normal"}) {
+      SCOPED_TRACE(testing::Message() << c.name << ", " << kind);
+      const bool along = kind == std::string("tangents along the normal");
+      if (along && std::string(c.name).find("axes") == std::string::npos) continue;  // rounding would leave a direction
+      scene::Scene scene = triangle(mat4(1.0f));
+      scene.instances[0].worldFromObject = c.worldFromObject;
+      scene::Geometry& g = scene.meshes[0].geometries[0];
+      g.uvs = {};
+      if (kind == std::string("flat")) {
+        g.positions = {{0, 0, 0}, {2, 0, 0}, {0.3f, 1, 0}};  // the normal is along z
+        g.normals.clear();
+      }
+      if (along) {
+        g.normals.assign(3, vec3(0, 0, 1));
+        g.tangents.assign(3, vec4(0, 0, 1, 1));
+      } else {
+        g.tangents.clear();
+      }
+      const std::vector<Frame> frames = framesOf(scene, points);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Frame& f = frames[i];
+        ASSERT_NEAR(glm::length(f.tangent), 1.0f, 1e-5f);
+        ASSERT_NEAR(glm::dot(f.tangent, f.normal), 0.0f, 1e-5f);
+        const bool right = !along || glm::determinant(mat3(c.worldFromObject)) > 0.0f;
+        ASSERT_LT(glm::length(f.bitangent - (right ? 1.0f : -1.0f) * glm::cross(f.normal, f.tangent)), 1e-5f);
+        ASSERT_EQ(f.uv, vec2(0.0f));
+        ASSERT_LT(glm::length(frames[count + i].normal - f.normal), 1e-5f) << "from behind";
+        ASSERT_LT(glm::length(frames[count + i].tangent - f.tangent), 1e-5f) << "from behind";
+        ASSERT_LT(glm::length(frames[count + i].bitangent - f.bitangent), 1e-5f) << "from behind";
+      }
+    }
+}
+
 double fromSrgb(int byte) {
   const double x = byte / 255.0;
   return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);

@@ -56,6 +56,60 @@ TEST(PlanCells, NeverRemovesBatches) {
   for (const std::uint32_t batches : planCells(estimateError(simulation.film), {0, 1})) EXPECT_GE(batches, 8u);
 }
 
+// A film of tiles with these variances of one batch, after 8 batches, in both cells.
+ErrorEstimate estimateOf(const std::vector<double>& variances, std::uint64_t batches = 8) {
+  ErrorEstimate estimate;
+  for (const double variance : variances)
+    for (int cell = 0; cell < 2; ++cell) {
+      const double ofMean = variance / static_cast<double>(batches);
+      estimate.cells.push_back({512, batches, 512 * ofMean, 512 * ofMean * ofMean});
+    }
+  return estimate;
+}
+
+// A tile without visible noise gets batches as if it had a hundredth of the mean variance: with variances 1 and 0 the mean is 0.5,
+// so the numbers are in the ratio 1 to √0.005.
+TEST(PlanCells, GivesAHundredthOfTheMeanVarianceToTilesWithoutNoise) {
+  const std::vector<std::uint32_t> plan = planCells(estimateOf({1.0, 0.0}), {0, 1000});
+  const double least = std::sqrt(0.005), factor = 2000.0 / (1.0 + least);
+  ASSERT_EQ(plan.size(), 4u);
+  for (const std::size_t cell : {0u, 1u}) EXPECT_NEAR(plan[cell], factor, 2.0);
+  for (const std::size_t cell : {2u, 3u}) EXPECT_NEAR(plan[cell], factor * least, 2.0);
+  // One with little noise above that limit gets its own share.
+  const std::vector<std::uint32_t> own = planCells(estimateOf({1.0, 0.01}), {0, 1000});
+  EXPECT_NEAR(own[0], 2000.0 / 1.1, 2.0);
+  EXPECT_NEAR(own[2], 200.0 / 1.1, 2.0);
+}
+
+// Each cell reaches half of its tile's allowed margin: batches ≥ margin² · variance / (2 · target)².
+TEST(PlanCells, LimitsTheErrorOfEachTile) {
+  std::vector<double> variances(64, 1e-6);
+  variances[5] = 4.0;
+  const ErrorEstimate estimate = estimateOf(variances);
+  ErrorSums sums;
+  sums.add(estimate.cells[10]);
+  const std::vector<std::uint32_t> plan = planCells(estimate, {0.5, 0});
+  EXPECT_GE(plan[10], sums.marginSquared() * 4.0 / (4.0 * 0.25));
+  EXPECT_LE(plan[10], std::ceil(sums.marginSquared() * 4.0 / (4.0 * 0.25)) + 1);
+  EXPECT_EQ(plan[0], 8u) << "has enough";
+}
+
+TEST(PlanCells, HasAtMostTwoToThe22Batches) {
+  const std::vector<std::uint32_t> plan = planCells(estimateOf({1.0, 1.0}), {1e-6, 0});
+  for (const std::uint32_t batches : plan) EXPECT_EQ(batches, 1u << 22);
+  // More than that are not taken away.
+  EXPECT_EQ(planCells(estimateOf({1.0}, (1u << 22) + 5u), {1e-6, 0})[0], (1u << 22) + 5u);
+}
+
+// A cell without pixels, in a tile of one column, gets nothing; the other one decides for itself.
+TEST(PlanCells, HasNoBatchesForCellsWithoutPixels) {
+  ErrorEstimate estimate = estimateOf({1.0, 1.0});
+  estimate.cells[3] = {0, 8, 0, 0};
+  const std::vector<std::uint32_t> plan = planCells(estimate, {0, 100});
+  EXPECT_EQ(plan[3], 0u);
+  EXPECT_NEAR(plan[2], 100, 1.0);
+}
+
 // If the target error is out of reach, the number of batches alone decides.
 TEST(PlanCells, StaysWithinTheNumberOfBatches) {
   std::mt19937 random(6);
