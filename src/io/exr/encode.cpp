@@ -25,6 +25,7 @@
 #include "base/plural.h"
 #include "io/codec.h"
 #include "io/exr/attributes.h"
+#include "io/exr/dwa_limits.h"
 #include "io/exr/exr.h"
 #include "io/formats.h"
 
@@ -233,11 +234,20 @@ void convertInto(std::vector<char>& bytes, std::span<const float> samples, Conve
   }
 }
 
-// Returns rows of one channel in the stored type. OpenEXR converts types when it reads, but not when it writes.
-const void* storedRows(const ExrChannel& channel, std::size_t first, std::size_t count, std::vector<char>& scratch) {
+// Returns rows of one channel in the stored type. OpenEXR converts types when it reads, but not when it writes. `limits`
+// can be null.
+const void* storedRows(const ExrChannel& channel, std::size_t first, std::size_t count, const DwaLimits* limits,
+                       std::vector<char>& scratch) {
   if (channel.type == ExrType::u32 && !channel.integers.empty()) return channel.integers.data() + first;
-  const std::span<const float> samples = std::span(channel.samples).subspan(first, count);
-  if (channel.type == ExrType::f32) return samples.data();
+  std::span<const float> samples = std::span(channel.samples).subspan(first, count);
+  std::vector<float> limited;
+  if (limits) {
+    limited.assign(samples.begin(), samples.end());
+    limits->clamp(channel, first, limited);
+    samples = limited;
+    if (channel.type == ExrType::f32) convertInto<float>(scratch, samples, [](float v) { return v; });
+  }
+  if (channel.type == ExrType::f32) return limits ? static_cast<const void*>(scratch.data()) : samples.data();
   if (channel.type == ExrType::half)
     convertInto<half>(scratch, samples, toHalf);
   else
@@ -267,8 +277,9 @@ std::uint32_t blockRows(const ExrImage& image, std::size_t channels) {
 // Writes a part in blocks, so that converted samples need little memory.
 class PartWriter {
  public:
-  PartWriter(const ExrImage& image, const Part& part, std::uint32_t tileSize)
-      : image_(image), part_(part), tileSize_(tileSize), scratch_(part.channels.size()) {}
+  // `limits` can be null.
+  PartWriter(const ExrImage& image, const Part& part, std::uint32_t tileSize, const DwaLimits* limits)
+      : image_(image), part_(part), tileSize_(tileSize), limits_(limits), scratch_(part.channels.size()) {}
 
   void write(Imf::MultiPartOutputFile& file, int index) {
     if (tileSize_ > 0) {
@@ -295,7 +306,7 @@ class PartWriter {
     Imf::FrameBuffer buffers;
     for (std::size_t c = 0; c < part_.channels.size(); ++c) {
       const ExrChannel& channel = *part_.channels[c];
-      const void* stored = storedRows(channel, y * width, count * width, scratch_[c]);
+      const void* stored = storedRows(channel, y * width, count * width, limits_, scratch_[c]);
       buffers.insert(channel.name, Imf::Slice::Make(pixelType(channel.type), stored,
                                                     box(image_.window.x, image_.window.y + y, image_.width, count)));
     }
@@ -305,8 +316,31 @@ class PartWriter {
   const ExrImage& image_;
   const Part& part_;
   const std::uint32_t tileSize_;
+  const DwaLimits* limits_;
   std::vector<std::vector<char>> scratch_;
 };
+
+// `limits`: of the parts with DWA.
+std::vector<std::byte> encodeParts(const ExrImage& image, const ExrOptions& options, const std::vector<Part>& parts,
+                                   const DwaLimits* limits) {
+  std::vector<Imf::Header> headers;
+  for (const Part& part : parts) headers.push_back(makeHeader(image, part, options, parts.size() > 1));
+  WriteStream stream;
+  try {
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threadsFor(image));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      PartWriter(image, parts[i], options.tileSize, isLossy(parts[i].compression) ? limits : nullptr)
+          .write(file, static_cast<int>(i));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("cannot encode an OpenEXR file: {}", error.what()));
+  }
+  return stream.take();
+}
+
+constexpr float kDefaultDwaLevel = 45.0f;  // of OpenEXR
+constexpr int kDwaAttempts = 8;
 
 }  // namespace
 
@@ -328,21 +362,19 @@ void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channel
 std::vector<std::byte> encodeExr(const ExrImage& image, const ExrOptions& options) {
   checkImage(image);
   checkOptions(image, options);
-  const std::vector<Part> parts = splitParts(image, options);
-  std::vector<Imf::Header> headers;
-  for (const Part& part : parts) headers.push_back(makeHeader(image, part, options, parts.size() > 1));
+  std::vector<Part> parts = splitParts(image, options);
+  const auto lossy = std::ranges::find_if(parts, [](const Part& part) { return isLossy(part.compression); });
+  if (lossy == parts.end()) return encodeParts(image, options, parts, nullptr);
 
-  WriteStream stream;
-  try {
-    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threadsFor(image));
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      PartWriter(image, parts[i], options.tileSize).write(file, static_cast<int>(i));
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("cannot encode an OpenEXR file: {}", error.what()));
+  DwaLimits limits(image, lossy->channels, options.tileSize);
+  const bool check = limits.canOverflow(lossy->level.value_or(kDefaultDwaLevel));
+  for (int attempt = 0; attempt < kDwaAttempts; ++attempt) {
+    std::vector<std::byte> bytes = encodeParts(image, options, parts, &limits);
+    if (!check || !limits.tighten(bytes, static_cast<int>(lossy - parts.begin()))) return bytes;
   }
-  return stream.take();
+  lossy->compression = ExrCompression::zip;
+  lossy->level.reset();
+  return encodeParts(image, options, parts, nullptr);
 }
 
 std::vector<std::byte> encodeExr(const Image& image, const Metadata& metadata) {

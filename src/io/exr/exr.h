@@ -75,8 +75,9 @@ struct ExrOptions {
 
 // Encodes one file. With a lossy compression (DWA) and `exact` channels it has two parts, "rgba" (lossy) and "data"
 // (ZIP); the part that has channels without a layer comes first. Otherwise it has one part. Finite values outside the
-// range of half are clamped to ±65504; u32 rounds `samples` to the nearest value in range. The same image gives the
-// same bytes. Throws UsageError for inconsistent sizes, duplicate names, invalid levels and sizes above the limits of
+// range of half are clamped to ±65504, and to ±60000 by DWA, which lowers values further where its quantization would make
+// them infinite; if that does not suffice (levels far above the default), the part gets ZIP. No finite value reads back as
+// infinity. u32 rounds `samples` to the nearest value in range. The same image gives the same bytes. Throws UsageError for inconsistent sizes, duplicate names, invalid levels and sizes above the limits of
 // decodeExr.
 std::vector<std::byte> encodeExr(const ExrImage& image, const ExrOptions& options = {});
 

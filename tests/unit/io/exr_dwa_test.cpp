@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lossy compressions of OpenEXR near the largest half float: no finite value becomes infinite.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "io/exr/dwa_limits.h"
+#include "io/exr/exr.h"
+
+namespace quintet::io {
+namespace {
+
+constexpr std::uint32_t kWidth = 70, kHeight = 45;
+
+struct Case {
+  ExrCompression compression;
+  std::optional<float> level;
+  ExrType type;
+  std::uint32_t tileSize;
+};
+
+std::vector<Case> allCases() {
+  std::vector<Case> cases;
+  for (const ExrCompression compression : {ExrCompression::dwaa, ExrCompression::dwab})
+    for (const std::optional<float> level : {std::optional<float>(), {0.0f}, {300.0f}, {2000.0f}, {10000.0f}})
+      for (const ExrType type : {ExrType::half, ExrType::f32})
+        for (const std::uint32_t tile : {0u, 16u, 33u}) cases.push_back({compression, level, type, tile});
+  return cases;
+}
+
+// R, G and B of the image and of a layer, and an alpha channel. The left half has noise near the largest half float.
+ExrImage brightImage(ExrType type) {
+  std::minstd_rand random(7);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  ExrImage image{kWidth, kHeight, {}};
+  for (const char* name : {"R", "G", "B", "A", "lights.R", "lights.G", "lights.B"}) {
+    ExrChannel channel{name, type, std::vector<float>(std::size_t{kWidth} * kHeight)};
+    for (std::size_t i = 0; i < channel.samples.size(); ++i) {
+      const float u = uniform(random);
+      channel.samples[i] = i % kWidth < kWidth / 2 ? 65504.0f * std::exp(-u * u * 8.0f) : u;
+    }
+    channel.samples[3] = 1e30f;
+    channel.samples[kWidth + 5] = -70000.0f;
+    channel.samples[2 * kWidth + 9] = std::numeric_limits<float>::quiet_NaN();
+    channel.samples[3 * kWidth + 9] = std::numeric_limits<float>::infinity();
+    channel.samples[20 * kWidth + kWidth - 1] = 65504.0f;  // alone among small values
+    image.channels.push_back(std::move(channel));
+  }
+  return image;
+}
+
+const ExrChannel& find(const ExrImage& image, const std::string& name) {
+  return *std::ranges::find(image.channels, name, &ExrChannel::name);
+}
+
+TEST(ExrDwaTest, WritesNoInfinityForFiniteValues) {
+  for (const Case& c : allCases()) {
+    const ExrImage image = brightImage(c.type);
+    const ExrImage back = decodeExr(encodeExr(image, {c.compression, c.level, c.tileSize}), "a.exr");
+    std::size_t wrong = 0;
+    for (const ExrChannel& channel : image.channels)
+      for (std::size_t i = 0; i < channel.samples.size(); ++i)
+        wrong += std::isfinite(channel.samples[i]) && !std::isfinite(find(back, channel.name).samples[i]) &&
+                 (channel.name != "A" || c.type == ExrType::half);
+    EXPECT_EQ(wrong, 0u) << exrCompressionNames()[static_cast<std::size_t>(c.compression)] << ":"
+                         << c.level.value_or(-1.0f) << " tiles " << c.tileSize << " type " << static_cast<int>(c.type);
+  }
+}
+
+// Values that are not in a block with an infinite value keep the precision of the compression.
+TEST(ExrDwaTest, KeepsTheValuesOfOtherBlocks) {
+  const ExrImage image = brightImage(ExrType::half);
+  for (const ExrCompression compression : {ExrCompression::dwaa, ExrCompression::dwab}) {
+    const std::vector<std::byte> bytes = encodeExr(image, {compression});
+    EXPECT_EQ(inspectExr(bytes, "a")[0].compression, exrCompressionNames()[static_cast<std::size_t>(compression)]);
+    const ExrImage back = decodeExr(bytes, "a.exr");
+    const std::vector<float>&before = find(image, "G").samples, &after = find(back, "G").samples;
+    for (std::size_t y = 0; y < 16; ++y)
+      for (std::size_t x = kWidth / 2 + 8; x < kWidth - 16; ++x)
+        EXPECT_NEAR(after[y * kWidth + x], before[y * kWidth + x], 0.05f);
+    EXPECT_GT(after[20 * kWidth + kWidth - 1], 10000.0f);
+  }
+}
+
+// A quantization that can raise any value to infinity is replaced by a compression without loss.
+TEST(ExrDwaTest, UsesZipWhereNoLimitIsLowEnough) {
+  ExrImage image = brightImage(ExrType::half);
+  const std::vector<std::byte> bytes = encodeExr(image, {ExrCompression::dwaa, 10000.0f});
+  const std::string used = inspectExr(bytes, "a")[0].compression;
+  if (used == "zip")
+    EXPECT_EQ(find(decodeExr(bytes, "a.exr"), "R").samples[3], 65504.0f);
+  else
+    EXPECT_EQ(used, "dwaa");
+}
+
+TEST(ExrDwaTest, DecodesTheFileOnlyForLargeValues) {
+  ExrImage image{8,
+                 8,
+                 {{"R", ExrType::half, std::vector<float>(64, 1000.0f)},
+                  {"depth.Z", ExrType::f32, std::vector<float>(64, 1e9f), true}}};
+  const std::vector<const ExrChannel*> channels{&image.channels[0]};
+  EXPECT_FALSE(DwaLimits(image, channels, 0).canOverflow(45.0f));
+  EXPECT_TRUE(DwaLimits(image, channels, 0).canOverflow(5000.0f));
+  image.channels[0].samples[63] = -2000.0f;
+  EXPECT_TRUE(DwaLimits(image, channels, 0).canOverflow(45.0f));
+}
+
+}  // namespace
+}  // namespace quintet::io
