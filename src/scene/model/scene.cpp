@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
+#include "scene/model/mesh_bounds.h"
 
 namespace quintet::scene {
 namespace {
@@ -11,32 +11,6 @@ namespace {
 // Up to this number of instanced vertices and primitives, worldBounds() is exact (a fraction of a second). Above it, it
 // returns the bounds of the transformed object bounds.
 constexpr std::uint64_t kExactVertexCount = 20'000'000;
-
-// Bounds of all points after `transform`, on all cores.
-template <class Transform>
-Bounds3 boundsOfPoints(const std::vector<vec3>& points, const Transform& transform) {
-  constexpr std::size_t kGrain = 65536;
-  std::vector<Bounds3> parts((points.size() + kGrain - 1) / kGrain);
-  parallelRanges(
-      points.size(),
-      [&](std::size_t first, std::size_t last) {
-        Bounds3 part;
-        for (std::size_t i = first; i < last; ++i) part.extend(transform(points[i]));
-        parts[first / kGrain] = part;
-      },
-      kGrain);
-  Bounds3 bounds;
-  for (const Bounds3& part : parts) bounds.extend(part);
-  return bounds;
-}
-
-Bounds3 objectBounds(const Mesh& mesh) {
-  Bounds3 bounds;
-  for (const Geometry& geometry : mesh.geometries)
-    bounds.extend(boundsOfPoints(geometry.positions, [](const vec3& p) { return p; }));
-  for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set));
-  return bounds;
-}
 
 std::uint64_t countPoints(const Mesh& mesh) {
   std::uint64_t count = 0;
@@ -51,12 +25,16 @@ const Mesh& meshOf(const Scene& scene, const Instance& instance) {
 }
 
 Bounds3 exactBounds(const Scene& scene) {
+  // The visible vertices of each geometry of a mesh that has an instance.
+  std::vector<std::vector<std::vector<std::uint8_t>>> visible(scene.meshes.size());
   Bounds3 bounds;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = meshOf(scene, instance);
-    for (const Geometry& geometry : mesh.geometries)
-      bounds.extend(boundsOfPoints(geometry.positions,
-                                   [&](const vec3& p) { return vec3(instance.worldFromObject * vec4(p, 1.0f)); }));
+    auto& known = visible[static_cast<std::size_t>(instance.mesh)];
+    for (std::size_t g = known.size(); g < mesh.geometries.size(); ++g)
+      known.push_back(visibleVertices(mesh.geometries[g]));
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g)
+      bounds.extend(geometryBounds(mesh.geometries[g], known[g], instance.worldFromObject));
     for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set, instance.worldFromObject));
   }
   return bounds;
@@ -64,7 +42,7 @@ Bounds3 exactBounds(const Scene& scene) {
 
 Bounds3 boundsOfBoxes(const Scene& scene) {
   std::vector<Bounds3> boxes;
-  for (const Mesh& mesh : scene.meshes) boxes.push_back(objectBounds(mesh));
+  for (const Mesh& mesh : scene.meshes) boxes.push_back(meshBounds(mesh, mat4(1.0f)));
   Bounds3 bounds;
   for (const Instance& instance : scene.instances)
     bounds.extend(boxes[static_cast<std::size_t>(instance.mesh)].transformed(instance.worldFromObject));

@@ -11,6 +11,7 @@
 #include "scene/error_matcher.h"
 #include "scene/gltf_builder.h"
 #include "scene/model/content_hash.h"
+#include "scene/model/mesh_bounds.h"
 #include "scene/model/validate.h"
 
 namespace quintet::test {
@@ -52,6 +53,25 @@ TEST(Scene, ComputesTightBoundsOfRotatedObjects) {
   const Bounds3 bounds = scene::worldBounds(s);
   EXPECT_NEAR(bounds.max.y, std::sqrt(0.5f), 1e-6f);  // the bounds of the rotated box would be 1.41
   EXPECT_NEAR(bounds.min.x, -std::sqrt(0.5f), 1e-6f);
+}
+
+// Vertices that are not visible: without a triangle, and of triangles without area.
+TEST(Scene, BoundsCountOnlyVerticesOfTrianglesWithArea) {
+  scene::Scene s = smallScene();
+  scene::Geometry& g = s.meshes[0].geometries[0];
+  g.positions.insert(g.positions.end(), {{1000, 0, 0}, {0, 1000, 0}, {0, 0, -1000}, {1, 0, -1000}, {2, 0, -1000}});
+  g.triangles.insert(g.triangles.end(), {{4, 4, 0}, {5, 6, 7}});
+  g.normals.assign(g.positions.size(), vec3(0, 0, 1));
+  EXPECT_EQ(scene::worldBounds(s).min, vec3(0));
+  EXPECT_EQ(scene::worldBounds(s).max, vec3(11, 1, 0));
+  EXPECT_EQ(scene::meshBounds(s.meshes[0], mat4(2.0f)).max, vec3(2, 2, 0));
+  g.triangles.push_back({0, 3, 1});  // on a line with the edge of the triangle
+  EXPECT_EQ(scene::worldBounds(s).max.x, 11.0f);
+  g.triangles.push_back({0, 3, 2});
+  EXPECT_EQ(scene::worldBounds(s).max.x, 1010.0f);
+  g.triangles.resize(3);
+  g.triangles.erase(g.triangles.begin());
+  EXPECT_TRUE(scene::worldBounds(s).empty());
 }
 
 TEST(Validate, ReportsTheFirstError) {
