@@ -225,22 +225,35 @@ void expectType(const Document& document, int index, int type, std::string_view 
                   fmt::format("accessor {} has type {}, expected {}", index, typeName(accessor.type), typeName(type)));
 }
 
+[[noreturn]] void failComponents(const Document& document, int index, std::string_view location,
+                                 std::string_view expected) {
+  const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
+  document.fail(location,
+                fmt::format("accessor {} has {}, expected {}", index, componentName(accessor.componentType), expected));
+}
+
 template <std::size_t N, class Element>
 std::vector<Element> readVectors(const Document& document, int index, int type, std::string_view location,
                                  Integers integers) {
   expectType(document, index, type, location);
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-    document.fail(location, fmt::format("accessor {} has unsigned ints, expected floats, bytes or shorts", index));
+    failComponents(document, index, location, "floats, bytes or shorts");
   return readElements<N, Element>(document, index, accessor.normalized || integers == Integers::unit);
 }
 
 void expectUnsigned(const Document& document, int index, std::initializer_list<int> allowed,
                     std::string_view location) {
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
-  if (std::find(allowed.begin(), allowed.end(), accessor.componentType) == allowed.end())
-    document.fail(location, fmt::format("accessor {} has {}, expected unsigned integers", index,
-                                        componentName(accessor.componentType)));
+  if (std::find(allowed.begin(), allowed.end(), accessor.componentType) != allowed.end()) return;
+  // "unsigned bytes, unsigned shorts or unsigned ints"
+  std::string expected;
+  for (const int* type = allowed.begin(); type != allowed.end(); ++type)
+    expected += (type == allowed.begin()     ? ""
+                 : type + 1 == allowed.end() ? " or "
+                                             : ", ") +
+                std::string(componentName(*type));
+  failComponents(document, index, location, expected);
 }
 
 }  // namespace
@@ -304,7 +317,7 @@ std::vector<vec4> readColors(const Document& document, int index, std::string_vi
 std::vector<mat4> readMat4(const Document& document, int index, std::string_view location) {
   expectType(document, index, TINYGLTF_TYPE_MAT4, location);
   if (document.model.accessors[static_cast<std::size_t>(index)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-    document.fail(location, fmt::format("accessor {} does not have floats", index));
+    failComponents(document, index, location, "floats");
   return readElements<16, mat4>(document, index, false);
 }
 

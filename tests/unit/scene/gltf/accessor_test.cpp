@@ -137,7 +137,27 @@ TEST(GltfAccessor, RejectsUnsignedIntAttributes) {
   GltfBuilder builder;
   builder.addMesh(
       {{"attributes", {{"POSITION", builder.addAccessor<std::uint32_t>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}}}});
-  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/primitives/0/attributes/POSITION", "unsigned ints"));
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/primitives/0/attributes/POSITION",
+                                          "accessor 0 has unsigned ints, expected floats, bytes or shorts"));
+}
+
+// A message names the types that are expected.
+TEST(GltfAccessor, NamesTheExpectedTypes) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  builder.primitive()["indices"] = builder.addAccessor<std::int16_t>({0, 1, 2}, "SCALAR");
+  EXPECT_THAT(errorOf(builder),
+              IsErrorAt("/meshes/0/primitives/0/indices",
+                        "accessor 1 has signed shorts, expected unsigned bytes, unsigned shorts or unsigned ints"));
+  builder.primitive().erase("indices");
+  builder.primitive()["attributes"]["JOINTS_0"] =
+      builder.addAccessor<std::uint32_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4");
+  builder.primitive()["attributes"]["WEIGHTS_0"] =
+      builder.addAccessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  builder.add("skins", {{"joints", {0}}});
+  builder.root["nodes"][0]["skin"] = 0;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/primitives/0/attributes/JOINTS_0",
+                                          "accessor 2 has unsigned ints, expected unsigned bytes or unsigned shorts"));
 }
 
 template <class T>
