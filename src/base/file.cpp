@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <system_error>
@@ -27,7 +30,7 @@ namespace fs = std::filesystem;
 std::string reason(int code) { return std::generic_category().message(code); }
 
 [[noreturn]] void failReading(const fs::path& file, int code) {
-  throw FileError(file, "cannot be read: " + reason(code));
+  throw FileError(file == kStandardInput ? "standard input" : file, "cannot be read: " + reason(code));
 }
 [[noreturn]] void failWriting(const fs::path& file, const std::string& why) {
   throw FileError(file, "cannot be written: " + why);
@@ -72,12 +75,7 @@ std::size_t readInParts(int fd, std::span<std::byte> data) {
 }
 
 template <class Container>
-Container readAll(const fs::path& file, MemoryBudget& budget) {
-  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat info {};
-  if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
-  if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
-
+Container readFrom(const Descriptor& in, const struct stat& info, const fs::path& file, MemoryBudget& budget) {
   Container data;
   std::size_t used = 0;
   try {
@@ -106,6 +104,51 @@ Container readAll(const fs::path& file, MemoryBudget& budget) {
     failReading(file, EFBIG);
   }
   return data;
+}
+
+// What was read from standard input, pipes and sockets, which give their bytes only once. A file is often read twice, for
+// example to find its format.
+class Streams {
+ public:
+  static Streams& instance() {
+    static Streams streams;
+    return streams;
+  }
+
+  // Other threads wait until the stream ends.
+  std::shared_ptr<const FileBytes> read(const Descriptor& in, const struct stat& info, const fs::path& file,
+                                        MemoryBudget& budget) {
+    const std::lock_guard lock(mutex_);
+    std::shared_ptr<const FileBytes>& known = bytes_[{info.st_dev, info.st_ino}];
+    if (!known) known = std::make_shared<FileBytes>(readFrom<FileBytes>(in, info, file, budget));
+    return known;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::pair<dev_t, ino_t>, std::shared_ptr<const FileBytes>> bytes_;
+};
+
+template <class Container>
+Container readAll(const fs::path& file, MemoryBudget& budget) {
+  const bool standardInput = file == kStandardInput;
+  const Descriptor in(standardInput ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                    : ::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat info {};
+  if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
+  if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
+  if (!standardInput && !S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode))
+    return readFrom<Container>(in, info, file, budget);
+
+  const std::shared_ptr<const FileBytes> bytes = Streams::instance().read(in, info, file, budget);
+  try {
+    budget.take(bytes->size());
+    using Value = typename Container::value_type;
+    const auto* first = reinterpret_cast<const Value*>(bytes->data());
+    return Container(first, first + bytes->size());
+  } catch (const std::bad_alloc&) {
+    failReading(file, ENOMEM);
+  }
 }
 
 // Returns 0 or the error code.

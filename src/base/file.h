@@ -35,7 +35,11 @@ struct UnclearedAllocator : std::allocator<T> {
 };
 using FileBytes = std::vector<std::byte, UnclearedAllocator<std::byte>>;
 
-// Reads a whole file. Throws FileError if it is missing, a folder, or unreadable; MemoryError if it is larger than 80 % of
+// The name of standard input for the functions that read, and of standard output for those that write.
+inline constexpr const char* kStandardInput = "-";
+
+// Reads a whole file, or all of a pipe: what was read from standard input, a pipe or a socket is kept, and reading it again
+// gives the same bytes. Throws FileError if it is missing, a folder, or unreadable; MemoryError if it is larger than 80 % of
 // the machine's memory, or than the budget allows. A budget counts the bytes before they are allocated.
 std::vector<std::byte> readFile(const std::filesystem::path& file);
 std::vector<std::byte> readFile(const std::filesystem::path& file, MemoryBudget&);

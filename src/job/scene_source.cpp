@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "program/hit_group_binding.h"
 #include "scene/toml/scene_toml.h"
 
@@ -17,6 +18,7 @@ namespace quintet::job {
 namespace {
 
 void checkReadable(const std::filesystem::path& file) {
+  if (file == kStandardInput) return;
   if (::access(file.c_str(), R_OK) != 0)
     throw FileError(file, "cannot be read: " + std::generic_category().message(errno));
 }
@@ -47,7 +49,9 @@ SceneSource chooseSceneSource(const std::filesystem::path& requested, const prog
                               const scene::LoadOptions& options) {
   if (!requested.empty()) {
     checkReadable(requested);
-    return {.file = requested, .options = options, .name = requested.filename().string()};
+    return {.file = requested,
+            .options = options,
+            .name = requested == kStandardInput ? "standard input" : requested.filename().string()};
   }
   if (!options.variant.empty())
     throw UsageError(fmt::format("no variant '{}': only glTF files have material variants", options.variant));

@@ -86,8 +86,9 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.programHelp || options.layerList) return options;
   if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
-  options.output.file = texts.output.empty() ? std::filesystem::path(texts.scene).filename().replace_extension(".png")
-                                             : std::filesystem::path(texts.output);
+  const std::filesystem::path scene = texts.scene == kStandardInput ? "stdin" : texts.scene;
+  options.output.file =
+      texts.output.empty() ? scene.filename().replace_extension(".png") : std::filesystem::path(texts.output);
   options.request.commandLine = commandLine("render", arguments);
   convertRendering(texts, options);
   checkStandardStreams(options);

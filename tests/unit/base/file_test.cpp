@@ -49,6 +49,74 @@ class Variable {
   std::optional<std::string> old_;
 };
 
+// Replaces standard input until the end of the scope.
+class StandardInput {
+ public:
+  explicit StandardInput(int descriptor) : old_(dup(STDIN_FILENO)) { dup2(descriptor, STDIN_FILENO); }
+  ~StandardInput() {
+    dup2(old_, STDIN_FILENO);
+    close(old_);
+  }
+  StandardInput(const StandardInput&) = delete;
+  StandardInput& operator=(const StandardInput&) = delete;
+
+ private:
+  int old_;
+};
+
+// Writes the text into a new pipe from another thread, and calls body(path of the pipe, descriptor).
+template <class Body>
+void withPipe(const std::string& text, const Body& body) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  std::thread writer([&] {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t more = write(ends[1], text.data() + done, text.size() - done);
+      if (more <= 0) break;
+      done += static_cast<std::size_t>(more);
+    }
+    close(ends[1]);
+  });
+  body(fs::path("/proc/self/fd/" + std::to_string(ends[0])), ends[0]);
+  writer.join();
+  close(ends[0]);
+}
+
+TEST(FileTest, ReadsPipesAsOftenAsFiles) {
+  const std::string large = std::string(300'000, 'x') + "end";  // more than a pipe holds
+  withPipe(large, [&](const fs::path& path, int) {
+    EXPECT_EQ(readTextFile(path), large);
+    EXPECT_EQ(readTextFile(path), large);
+    EXPECT_EQ(readFile(path).size(), large.size());
+  });
+  withPipe("second", [&](const fs::path& path, int) { EXPECT_EQ(readTextFile(path), "second"); });
+  withPipe("", [&](const fs::path& path, int) { EXPECT_EQ(readTextFile(path), ""); });
+}
+
+TEST(FileTest, ReadsStandardInput) {
+  withPipe("from a pipe", [&](const fs::path&, int descriptor) {
+    const StandardInput input(descriptor);
+    EXPECT_EQ(readTextFile("-"), "from a pipe");
+    EXPECT_EQ(readTextFile("-"), "from a pipe");
+    EXPECT_EQ(readTextFile("/dev/stdin"), "from a pipe");
+  });
+  const TempFolder folder;
+  writeFile(folder.path() / "a", "from a file");
+  const int file = open((folder.path() / "a").c_str(), O_RDONLY);
+  {
+    const StandardInput input(file);
+    EXPECT_EQ(readTextFile("-"), "from a file");
+    EXPECT_EQ(readTextFile("-"), "from a file");
+  }
+  close(file);
+  const int directory = open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
+  {
+    const StandardInput input(directory);
+    EXPECT_EQ(messageOf([] { readFile("-"); }), "standard input: cannot be read: Is a directory");
+  }
+  close(directory);
+}
+
 TEST(FileErrorTest, ContainsFileLocationAndProblem) {
   const FileError error("scene.gltf", "/nodes/3", "no such mesh");
   EXPECT_STREQ(error.what(), "scene.gltf: /nodes/3: no such mesh");
