@@ -235,7 +235,7 @@ struct SceneReport {
 
 // A scene in host memory: a value. Copies share their data until one of them changes. Functions that add or replace objects
 // throw UsageError with the name of the object for indices out of range, attributes of the wrong length, values that are not
-// finite, and transforms that are not invertible; the scene is then unchanged. Only normals, tangents, texture coordinates and
+// finite, texels, emission and intensities above 1e12, and transforms that are not invertible; the scene is then unchanged. Only normals, tangents, texture coordinates and
 // colors of vertices, and texels of files, are repaired instead. Use an object from one thread at a time; copies can be used
 // from different threads.
 class Scene {

@@ -6,6 +6,7 @@
 #include "bsdf/bsdf.glsl"
 #include "bsdf/dispersion.glsl"
 #include "features.glsl"
+#include "shared/radiance.h"
 #include "surface.glsl"
 
 struct Shading {
@@ -112,6 +113,15 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.transmission = clamp(r.bsdf.transmission, 0.0, 1.0);
   r.bsdf.sheenColor = clamp(r.bsdf.sheenColor, 0.0, 1.0);
   r.bsdf.diffuseTransmission = clamp(r.bsdf.diffuseTransmission, 0.0, 1.0);
+  r.bsdf.diffuseTransmissionColor = clamp(r.bsdf.diffuseTransmissionColor, 0.0, 1.0);
+  r.bsdf.specular = clamp(r.bsdf.specular, 0.0, 1.0);
+  r.bsdf.specularColor = max(r.bsdf.specularColor, 0.0);
+  r.bsdf.clearcoat = clamp(r.bsdf.clearcoat, 0.0, 1.0);
+  coatRoughness = clamp(coatRoughness, 0.0, 1.0);
+  r.bsdf.anisotropy = clamp(r.bsdf.anisotropy, 0.0, 1.0);
+  r.bsdf.iridescence = clamp(r.bsdf.iridescence, 0.0, 1.0);
+  r.bsdf.iridescenceThickness = max(r.bsdf.iridescenceThickness, 0.0);
+  roughMetal = clamp(roughMetal, 0.0, 1.0);
   r.bsdf.metallic = roughMetal.y;
   r.bsdf.alpha = roughMetal.x * roughMetal.x;
   r.bsdf.ior = MATERIAL.ior;
@@ -123,6 +133,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   const vec2 rotation = MATERIAL.anisotropyDirection;
   // The same factor as in lights/triangle.glsl for light samples.
   if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));
+  r.emission = clamp(r.emission, 0.0, kMaxRadiance);
 #undef MATERIAL
 
   // Normal maps are defined in the frame of the front side. For a back side the whole frame is turned.

@@ -16,6 +16,7 @@
 #include "scene/geometry/repair.h"
 #include "scene/geometry/tangents.h"
 #include "scene/load.h"
+#include "scene/model/limits.h"
 #include "scene/model/validate.h"
 #include "scene/toml/scene_toml.h"
 
@@ -155,13 +156,21 @@ io::Image toIo(const Texture& texture, const std::string& name) {
       },
       texture.pixels);
   if (const auto* values = std::get_if<std::span<const float>>(&texture.pixels)) {
-    const auto wrong = std::ranges::find_if_not(*values, [](float value) { return std::isfinite(value); });
+    const auto wrong =
+        std::ranges::find_if_not(*values, [](float value) { return std::abs(value) <= scene::kMaxRadiance; });
     const auto pixel = static_cast<std::size_t>(wrong - values->begin()) / texture.channels;
     if (wrong != values->end())
-      throw UsageError(
-          fmt::format("{}: pixel ({}, {}) is not finite", name, pixel % texture.width, pixel / texture.width));
+      throw UsageError(fmt::format("{}: pixel ({}, {}) is {}", name, pixel % texture.width, pixel / texture.width,
+                                   std::isfinite(*wrong) ? fmt::format("{:g}, above {:g}", *wrong, scene::kMaxRadiance)
+                                                         : std::string("not finite")));
   }
   return image;
+}
+
+// Repairs the values of an image, and adds a line to the report if it changes.
+void addRepair(scene::Scene& scene, const std::filesystem::path& file, io::Image& image) {
+  if (const std::string repair = scene::repairTexels(image); !repair.empty())
+    scene.report.repaired.push_back(fmt::format("{}: {}", file.string(), repair));
 }
 
 // Appends `object` and validates it; removes it again if it is invalid.
@@ -300,6 +309,7 @@ int Scene::addTexture(const std::filesystem::path& file, std::size_t maxMemory) 
   MemoryBudget budget(file, maxMemory);
   io::Image image = io::readImage(file, budget);
   scene::Scene& scene = *change().scene;
+  addRepair(scene, file, image);
   scene.images.push_back({file.string(), std::move(image)});
   scene.textures.push_back({file.filename().string(), static_cast<int>(scene.images.size() - 1), {}});
   return static_cast<int>(scene.textures.size() - 1);
@@ -401,6 +411,8 @@ void Scene::setEnvironment(const Environment& environment) {
   if (!isFinite(added.constant) || glm::any(glm::lessThan(added.constant, vec3(0.0f))) ||
       !(environment.intensity >= 0.0f) || !std::isfinite(environment.intensity + environment.rotation))
     throw UsageError("environment: radiance and intensity must be finite and not negative, the rotation finite");
+  if (!glm::all(glm::lessThanEqual(added.constant, vec3(scene::kMaxRadiance))))
+    throw UsageError(fmt::format("environment: the radiance must be at most {:g}", scene::kMaxRadiance));
   if (!environment.pixels.empty()) {
     const std::span<const float> values(environment.pixels.front().data(), 3 * environment.pixels.size());
     added.image = toIo({"", environment.width, environment.height, 3, values}, "environment");
@@ -414,7 +426,9 @@ void Scene::setEnvironment(const std::filesystem::path& file, std::size_t maxMem
   added.present = true;
   added.name = file.string();
   added.image = io::readRadiance(file, budget);
-  change().scene->environment = std::move(added);
+  scene::Scene& scene = *change().scene;
+  addRepair(scene, file, added.image);
+  scene.environment = std::move(added);
 }
 
 void Scene::setMaterial(int index, const Material& material) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/toml_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/normal_float.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 
@@ -26,6 +29,14 @@ std::string describe(const NumberRange& r) {
   if (r.high >= kLargest) return fmt::format(" {} {}", r.lowExcluded ? "above" : "of at least", r.low);
   if (r.lowExcluded || r.highExcluded) return fmt::format(" between {} and {}", r.low, r.high);
   return fmt::format(" from {} to {}", r.low, r.high);
+}
+
+// The float nearest to a number in the range, which can round to a limit that is excluded.
+float inside(const NumberRange& r, float x) {
+  if (r.lowExcluded && x <= r.low) return std::nextafter(static_cast<float>(r.low), std::numeric_limits<float>::max());
+  if (r.highExcluded && x >= r.high)
+    return std::nextafter(static_cast<float>(r.high), -std::numeric_limits<float>::max());
+  return x;
 }
 
 // False for NaN.
@@ -164,15 +175,18 @@ const TomlValue* TomlReader::inlineTable(const std::string& key, std::string_vie
 }
 
 float TomlReader::toNumber(const TomlValue& value, std::string_view name, const NumberRange& range) const {
-  if (!value.isNumber() || !contains(range, value.real)) failType(value, name, "a number" + describe(range));
-  return static_cast<float>(value.real);
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  const double real = std::clamp(value.real, -kLargest, kLargest);  // "no limit" can be any large number
+  if (!value.isNumber() || !contains(range, real)) failType(value, name, "a number" + describe(range));
+  return inside(range, normalFloat(real));
 }
 
 std::uint32_t TomlReader::toInteger(const TomlValue& value, std::string_view name, std::uint32_t low,
                                     std::uint32_t high) const {
-  if (value.kind != Kind::integer || value.integer < low || value.integer > high)
+  // 4.0 is accepted as 4.
+  if (!value.isNumber() || value.real != std::floor(value.real) || value.real < low || value.real > high)
     failType(value, name, fmt::format("an integer from {} to {}", low, high));
-  return static_cast<std::uint32_t>(value.integer);
+  return static_cast<std::uint32_t>(value.real);
 }
 
 std::string TomlReader::toText(const TomlValue& value, std::string_view name) const {

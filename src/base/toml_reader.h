@@ -22,7 +22,8 @@ namespace quintet {
 // Throws FileError "file: line N: problem"; unprintable characters of the problem become '?'.
 [[noreturn]] void failAt(const std::filesystem::path& file, const TomlValue& at, std::string_view problem);
 
-// An interval of numbers; the default is all finite floats.
+// An interval of numbers; the default is all finite floats. Numbers beyond the range of float count as its largest numbers,
+// and those closer to 0 than the smallest normal float as that one.
 struct NumberRange {
   double low = -std::numeric_limits<float>::max();
   double high = std::numeric_limits<float>::max();

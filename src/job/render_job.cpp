@@ -97,6 +97,7 @@ void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& 
   if (loaded.environment.isFallback && !job.accumulatesFrames())
     observer.note(fmt::format(
         "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
+  if (!loaded.environment.repair.empty()) observer.warning(loaded.environment.repair);
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;
   if (!report.animations.empty() && !loaded.scene.nodeAnimation)

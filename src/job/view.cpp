@@ -16,6 +16,7 @@
 #include "io/codec.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/defaults/default_environment.h"
+#include "scene/model/limits.h"
 
 namespace quintet::job {
 namespace {
@@ -76,7 +77,8 @@ float distanceTo(const Bounds3& bounds, const scene::Camera& camera) {
   return distance > 0.0f ? distance : camera.focusDistance;
 }
 
-scene::Environment readEnvironment(const std::string& source, std::size_t maxMemory) {
+// `repair`: what was changed in the image.
+scene::Environment readEnvironment(const std::string& source, std::size_t maxMemory, std::string& repair) {
   scene::Environment environment;
   environment.name = source;
   environment.present = true;
@@ -84,12 +86,16 @@ scene::Environment readEnvironment(const std::string& source, std::size_t maxMem
   if (!isColor) {
     MemoryBudget budget(source, maxMemory);
     environment.image = io::readRadiance(source, budget);
+    repair = scene::repairTexels(environment.image);
     return environment;
   }
   const std::optional<vec3> color = parseVec3(source);
   if (!color) throw UsageError(fmt::format("environment: '{}' is not three numbers like 1,2.5,3", printable(source)));
   if (glm::any(glm::lessThan(*color, vec3(0.0f))))
     throw UsageError(fmt::format("environment: '{}' has a negative radiance", source));
+  if (!glm::all(glm::lessThanEqual(*color, vec3(scene::kMaxRadiance))))
+    throw UsageError(
+        fmt::format("environment: '{}' is too bright; at most {:g} in each channel", source, scene::kMaxRadiance));
   environment.constant = *color;
   return environment;
 }
@@ -145,7 +151,9 @@ EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const Environment
   } else if (request.source == "default") {
     chosen = {scene::defaultEnvironment(), "default"};
   } else if (!request.source.empty()) {
-    chosen = {readEnvironment(request.source, maxMemory), request.source};
+    std::string repair;
+    chosen = {readEnvironment(request.source, maxMemory, repair), request.source};
+    if (!repair.empty()) chosen.repair = fmt::format("{}: {}", printable(request.source), repair);
   } else if (scene.environment.present) {
     chosen = {scene.environment, "of the scene"};
   } else if (!scene::hasEmitters(scene)) {

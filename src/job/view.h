@@ -30,6 +30,7 @@ struct EnvironmentChoice {
   scene::Environment environment;
   std::string description;  // for metadata: "sky.hdr", "default", "none", "of the scene"
   bool isFallback = false;  // the default environment, used because the scene has no lights
+  std::string repair = {};  // "sky.exr: 1 pixel is …": what was changed in the image of the request; else empty
   // Before adjust().
   float sourceIntensity = 1;
   float sourceRotation = 0;  // radians

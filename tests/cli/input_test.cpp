@@ -2,8 +2,13 @@
 // Missing and broken scenes and images: status 1 and one line with the file and the location in it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "fixtures.h"
 #include "io/codec.h"
+#include "io/exr/exr.h"
 
 namespace quintet::test {
 namespace {
@@ -43,6 +48,50 @@ TEST_F(Input, BrokenJson) {
 TEST_F(Input, BrokenSceneFile) {
   write(folder_ / "bad.scene.toml", "[[material]]\nname = 'm'\nrougness = 1\n");
   expectRejected("bad.scene.toml", {"bad.scene.toml: line 3", "did you mean 'roughness'"});
+}
+
+// `-`, /dev/stdin and named pipes give the same image as the file.
+TEST_F(Input, ScenesFromPipes) {
+  ASSERT_EQ(quintet(quick({"-o", "file.png"})).status, 0);
+  const auto from = [&](const std::string& scene, const std::string& shell) {
+    RunOptions options;
+    options.shell = shell;
+    std::vector<std::string> arguments = quick({"-o", "pipe.png"});
+    arguments[1] = scene;
+    const RunResult result = quintet(arguments, options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(readImage("pipe.png").data, readImage("file.png").data) << scene;
+    std::filesystem::remove(folder_ / "pipe.png");
+  };
+  const std::string fifo = "rm -f p; mkfifo p; cat scene.gltf > p & true";
+  from("p", fifo);
+  from("-", fifo + "; exec < p");
+  from("/dev/stdin", fifo + "; exec < p");
+  from("-", "exec < scene.gltf");
+  RunOptions options;
+  options.shell = fifo + "; exec < p";
+  const RunResult info = quintet({"info", "-"}, options);
+  EXPECT_EQ(info.status, 0) << info.err;
+  options.shell = "exec < /dev/null";
+  expectError(quintet({"render", "-", "--size", "8", "-o", "out.png"}, options), 1, {"the file is empty"});
+}
+
+// Texels of an environment that are not finite, or whose sums overflow, leave the image finite.
+TEST_F(Input, EnvironmentsThatAreNotFinite) {
+  for (const float bad : {std::numeric_limits<float>::infinity(), 1e20f, std::numeric_limits<float>::max()}) {
+    io::ExrImage sky{16, 8, {}};
+    for (const char* name : {"R", "G", "B"})
+      sky.channels.push_back({name, io::ExrType::f32, std::vector<float>(128, 1.0f)});
+    for (io::ExrChannel& channel : sky.channels) channel.samples[3 * 16 + 5] = bad;
+    write(folder_ / "sky.exr", io::encodeExr(sky));
+    const RunResult result = quintet({"render", "scene.gltf", "--size", "8x6", "--spp", "8", "--env", "sky.exr", "-o",
+                                      "out.exr", "--exr-type", "float", "-q"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, ::testing::HasSubstr("warning: sky.exr: 1 pixel is NaN, infinite or above 1e+12"));
+    EXPECT_THAT(result.err, ::testing::HasSubstr("(5, 3)"));
+    const io::Image image = readImage("out.exr");
+    EXPECT_TRUE(std::ranges::all_of(image.samples<float>(), [](float v) { return std::isfinite(v); })) << bad;
+  }
 }
 
 TEST_F(Input, NeitherSceneNorImage) {

@@ -6,14 +6,15 @@
 #define QUINTET_LIGHTS_ENVIRONMENT_GLSL
 
 #include "../sampling/hash.glsl"
+#include "../shared/radiance.h"
 #include "alias.glsl"
 #include "equirect.glsl"
 #include "light_sample.glsl"
 
 vec3 environmentRadiance(vec3 direction) {
   const EnvironmentData e = frame.environment;
-  if (e.texture == kNoTexture) return e.scale;
-  return e.scale * textureLod(textures[nonuniformEXT(e.texture)], equirectFromDirection(e, direction), 0.0).rgb;
+  if (e.texture == kNoTexture) return min(e.scale, kMaxRadiance);
+  return min(e.scale * textureLod(textures[nonuniformEXT(e.texture)], equirectFromDirection(e, direction), 0.0).rgb, kMaxRadiance);
 }
 
 // Returns (cos θ_top - cos θ_bottom) / 2 of a row. The product form from the nearer pole avoids cancellation.

@@ -6,6 +6,7 @@
 #include "../bsdf/clearcoat.glsl"
 #include "../features.glsl"
 #include "../sampling/warp.glsl"
+#include "../shared/radiance.h"
 #include "../surface.glsl"
 #include "light_sample.glsl"
 
@@ -45,11 +46,13 @@ vec3 surfaceEmission(InstanceData instance, uint material, float alpha, vec2 uv0
   const MaterialData m = MaterialArray(frame.materials).at[material];
   vec3 emission = m.emissive;
   if (kHasClearcoat && m.clearcoat > 0.0 && (m.flags & kMaterialUnlit) == 0u) {
-    const float roughness = m.clearcoatRoughness * lightTexture(m.clearcoatRoughnessTexture, uv0, uv1, 1);
-    emission *= clearcoatPassed(m.clearcoat * lightTexture(m.clearcoatTexture, uv0, uv1, 0), roughness * roughness, cosine);
+    const float roughness = clamp(m.clearcoatRoughness * lightTexture(m.clearcoatRoughnessTexture, uv0, uv1, 1), 0.0, 1.0);
+    const float coat = clamp(m.clearcoat * lightTexture(m.clearcoatTexture, uv0, uv1, 0), 0.0, 1.0);
+    emission *= clearcoatPassed(coat, roughness * roughness, cosine);
   }
   const bool textured = (kTextureSlots & (1u << kTextureEmissive)) != 0u && m.emissiveTexture.index != kNoTexture;
   if (textured) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
+  emission = clamp(emission, 0.0, kMaxRadiance);
   if (!kHasAlpha || (m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
   if ((instance.flags & kInstanceOpaque) != 0u) return emission;
   alpha *= m.baseColor.a;

@@ -29,7 +29,7 @@ struct EnvironmentTable {
 // Builds the table of the environment in use; `environment.present` is ignored. A constant environment has one cell.
 // The texture must be sampled bilinearly, repeated in u and clamped in v: the weight of a cell is the mean of the
 // luminance that is interpolated this way, times the cell's solid angle. Each direction with nonzero interpolated
-// radiance therefore has a positive density. Negative samples and NaN count as 0, infinite samples as 1e30.
+// radiance therefore has a positive density. Negative samples and NaN count as 0, larger ones than scene::kMaxRadiance as that.
 EnvironmentTable buildEnvironmentTable(const scene::Environment& environment);
 
 }  // namespace quintet::render

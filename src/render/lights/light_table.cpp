@@ -8,6 +8,7 @@
 #include "render/lights/alias_table.h"
 #include "render/lights/luminance.h"
 #include "scene/animation/keyframes.h"
+#include "scene/model/limits.h"
 
 namespace quintet::render {
 namespace {
@@ -166,6 +167,7 @@ LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Env
       maxTriangleLights_(maxTriangleLights),
       environmentIntegral_(environment_.width > 0 ? environment_.integral : 0.0) {
   const Bounds3 bounds = scene::worldBounds(scene);
+  scene::checkExtent(scene, bounds);
   const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
   crossSection_ = kPiDouble * (radius > 0.0 && std::isfinite(radius) ? radius * radius : 1.0);
   addParts(scene);

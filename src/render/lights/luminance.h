@@ -8,13 +8,14 @@
 
 #include "base/luminance.h"
 #include "base/math.h"
+#include "scene/model/limits.h"
 
 namespace quintet::render {
 
 // Returns the Rec. 709 luminance, which is positive if any component is. Negative components and NaN count as 0,
-// infinite components as 1e30.
+// components above the largest radiance as that.
 inline float lightLuminance(const vec3& color) {
-  const auto clean = [](float c) { return c > 0.0f ? std::min(c, 1e30f) : 0.0f; };
+  const auto clean = [](float c) { return c > 0.0f ? std::min(c, scene::kMaxRadiance) : 0.0f; };
   return luminance({clean(color.x), clean(color.y), clean(color.z)});
 }
 

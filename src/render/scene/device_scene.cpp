@@ -10,10 +10,12 @@
 #include "base/memory.h"
 #include "base/stopwatch.h"
 #include "check/scene_facts.h"
+#include "quintet/shared/radiance.h"
 #include "render/scene/albedo_tables.h"
 #include "render/scene/material_data.h"
 #include "render/scene/procedural_data.h"
 #include "scene/animation/keyframes.h"
+#include "scene/model/limits.h"
 
 namespace quintet::render {
 namespace {
@@ -24,10 +26,12 @@ constexpr VkDeviceSize kLightStaging = VkDeviceSize{32} << 20;   // largest stag
 constexpr VkDeviceSize kMinLightBuffer = VkDeviceSize{1} << 20;  // buffers up to this size are not shrunk
 constexpr std::uint32_t kMinSlots = 1024;                        // of textures; those without a texture are white
 
-// Returns the environment's texels as the device samples them: finite and not negative.
+static_assert(shared::kMaxRadiance == scene::kMaxRadiance);
+
+// Returns the environment's texels as the device samples them: not negative, and at most the largest radiance.
 io::Image cleanEnvironment(const io::Image& image) {
   io::Image clean = io::toChannels(io::toFloat(image), 4);
-  for (float& value : clean.samples<float>()) value = value > 0.0f ? std::min(value, 1e30f) : 0.0f;
+  for (float& value : clean.samples<float>()) value = value > 0.0f ? std::min(value, scene::kMaxRadiance) : 0.0f;
   return clean;
 }
 

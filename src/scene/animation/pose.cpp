@@ -10,6 +10,7 @@
 #include "scene/animation/keyframes.h"
 #include "scene/animation/properties.h"
 #include "scene/geometry/repair.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -108,7 +109,9 @@ mat4 worldFromObjectAt(const Instance& instance, const Pose& pose) {
 
 mat4 shownTransformAt(const Instance& instance, const Pose& pose) {
   mat4 transform = worldFromObjectAt(instance, pose);
-  if (!isVisible(instance.visibleNode, pose)) transform[0] = transform[1] = transform[2] = vec4(0.0f);
+  const bool far = !isWithinLimits(transform);
+  if (far) transform[3] = vec4(0, 0, 0, 1);
+  if (far || !isVisible(instance.visibleNode, pose)) transform[0] = transform[1] = transform[2] = vec4(0.0f);
   return transform;
 }
 
@@ -129,7 +132,9 @@ Light lightAt(const Light& light, const Pose& pose) {
     moved.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
   }
   for (const AnimatedValue& value : light.values) setLightValue(moved, value.property, pose.values[value.value]);
-  if (!isVisible(light.visibleNode, pose)) moved.intensity = vec3(0.0f);
+  const bool far = !isWithinLimits(moved.position);
+  if (far) moved.position = vec3(0.0f);
+  if (far || !isVisible(light.visibleNode, pose)) moved.intensity = vec3(0.0f);
   return moved;
 }
 

@@ -6,8 +6,10 @@
 #include <limits>
 #include <span>
 
+#include "base/normal_float.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/geometry/repair.h"
+#include "scene/model/limits.h"
 #include "scene/model/material_textures.h"
 
 namespace quintet::scene {
@@ -42,9 +44,10 @@ constexpr auto kMaterialRows = std::to_array<Row<Material>>({
     {"pbrMetallicRoughness/roughnessFactor", 1, setNumber<&Material::roughness, 0, 1>, "roughness"},
     {"normalTexture/scale", 1, [](Material& m, const vec4& v) { m.normalScale = v.x; }, "normal_scale"},
     {"alphaCutoff", 1, setNumber<&Material::alphaCutoff, 0, kUnlimited>, "alpha_cutoff"},
-    {"emissiveFactor", 3, setColor<&Material::emissive, kUnlimited>, "emissive"},
+    {"emissiveFactor", 3, [](Material& m, const vec4& v) { m.emissive = glm::clamp(vec3(v), 0.0f, kMaxRadiance); },
+     "emissive"},
     {"extensions/KHR_materials_emissive_strength/emissiveStrength", 1,
-     [](Material& m, const vec4& v) { m.emissive = glm::min(m.emissive * std::clamp(v.x, 0.0f, kHuge), kHuge); },
+     [](Material& m, const vec4& v) { m.emissive = glm::min(m.emissive * std::clamp(v.x, 0.0f, kHuge), kMaxRadiance); },
      "emissive_strength"},
     {"extensions/KHR_materials_ior/ior", 1,
      [](Material& m, const vec4& v) { m.ior = v.x == 0.0f ? 0.0f : std::clamp(v.x, 1.0f, kHuge); }, "ior"},
@@ -52,7 +55,8 @@ constexpr auto kMaterialRows = std::to_array<Row<Material>>({
      "transmission"},
     {"extensions/KHR_materials_volume/thicknessFactor", 1, setNumber<&Material::thickness, 0, kUnlimited>, "thickness"},
     {"extensions/KHR_materials_volume/attenuationDistance", 1,
-     [](Material& m, const vec4& v) { m.attenuationDistance = std::max(v.x, kSmallest); }, "attenuation_distance"},
+     [](Material& m, const vec4& v) { m.attenuationDistance = distanceOrInfinity(std::max(v.x, kSmallest)); },
+     "attenuation_distance"},
     {"extensions/KHR_materials_volume/attenuationColor", 3,
      [](Material& m, const vec4& v) { m.attenuationColor = glm::clamp(vec3(v), 1e-6f, 1.0f); }, "attenuation_color"},
     {"extensions/KHR_materials_volume_scatter/multiscatterColor", 3, setColor<&Material::multiscatterColor, 1>,
@@ -122,13 +126,13 @@ constexpr auto kTransformRows = std::to_array<Row<TextureUse>>({
 });
 
 constexpr auto kLightRows = std::to_array<Row<Light>>({
-    {"color", 3, [](Light& l, const vec4& v) { l.intensity = glm::clamp(vec3(v), 0.0f, kHuge); }, "color"},
+    {"color", 3, [](Light& l, const vec4& v) { l.intensity = glm::clamp(vec3(v), 0.0f, kMaxRadiance); }, "color"},
     {"intensity", 1,
-     [](Light& l, const vec4& v) { l.intensity = glm::min(l.intensity * std::clamp(v.x, 0.0f, kHuge), kHuge); },
+     [](Light& l, const vec4& v) { l.intensity = glm::min(l.intensity * std::clamp(v.x, 0.0f, kHuge), kMaxRadiance); },
      "intensity"},
     {"range", 1,
      [](Light& l, const vec4& v) {
-       if (l.type != LightType::directional) l.range = v.x > 0.0f ? v.x : Light().range;
+       if (l.type != LightType::directional) l.range = v.x > 0.0f ? distanceOrInfinity(v.x) : Light().range;
      },
      "range"},
     {"spot/outerConeAngle", 1,

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -47,20 +48,20 @@ std::size_t countIf(std::vector<T>& values, const Test& test) {
 
 std::size_t dropNonFiniteTriangles(Geometry& geometry) {
   auto& positions = geometry.positions;
-  if (countIf(positions, [](const vec3& p) { return !isFinite(p); }) == 0) return 0;
-  const auto good = std::ranges::find_if(positions, [](const vec3& p) { return isFinite(p); });
+  if (countIf(positions, [](const vec3& p) { return !isWithinLimits(p); }) == 0) return 0;
+  const auto good = std::ranges::find_if(positions, [](const vec3& p) { return isWithinLimits(p); });
 
   std::vector<uvec3> kept;
   std::vector<std::uint32_t> numbers;
   for (std::uint32_t i = 0; i < geometry.triangles.size(); ++i) {
     const uvec3& t = geometry.triangles[i];
-    if (!isFinite(positions[t.x]) || !isFinite(positions[t.y]) || !isFinite(positions[t.z])) continue;
+    if (!isWithinLimits(positions[t.x]) || !isWithinLimits(positions[t.y]) || !isWithinLimits(positions[t.z])) continue;
     kept.push_back(t);
     numbers.push_back(geometry.fileTriangles.empty() ? i : geometry.fileTriangles[i]);
   }
   const vec3 replacement = good == positions.end() ? vec3(0.0f) : *good;
   for (vec3& p : positions)
-    if (!isFinite(p)) p = replacement;
+    if (!isWithinLimits(p)) p = replacement;
   const std::size_t dropped = geometry.triangles.size() - kept.size();
   if (dropped > 0) geometry.fileTriangles = std::move(numbers);
   geometry.triangles = std::move(kept);

@@ -8,7 +8,8 @@
 
 namespace quintet::scene {
 
-// Drops triangles that have a vertex with a NaN or infinite position (fileTriangles keeps the numbers of the others),
+// Drops triangles that have a vertex with a NaN or infinite position, or beyond the largest coordinate (fileTriangles keeps the
+// numbers of the others),
 // and moves such vertices to a finite position, so that the bounds of all positions are finite.
 std::size_t dropNonFiniteTriangles(Geometry&);
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -207,9 +209,34 @@ void checkNesting(const std::filesystem::path& file, std::string_view text) {
   }
 }
 
+// Replaces numbers beyond the range of double, which the parser rejects, by the largest double. Text in strings stays.
+std::string withoutOverflows(std::string_view text) {
+  constexpr std::string_view kLargest = "1.7976931348623157e308";
+  std::string result;
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i + 1;
+    if (inString && text[i] == '\\' && end < text.size()) ++end;
+    if (text[i] == '"') inString = !inString;
+    if (!inString && text[i] >= '0' && text[i] <= '9') {
+      end = std::min(text.find_first_not_of("0123456789.eE+-", i), text.size());
+      const std::string number(text.substr(i, end - i));
+      result += std::isinf(std::strtod(number.c_str(), nullptr)) ? kLargest : std::string_view(number);
+    } else {
+      result += text.substr(i, end - i);
+    }
+    i = end;
+  }
+  return result;
+}
+
 json parseJson(const std::filesystem::path& file, std::string_view text) {
   try {
-    return json::parse(text);
+    try {
+      return json::parse(text);
+    } catch (const json::out_of_range&) {
+      return json::parse(withoutOverflows(text));
+    }
   } catch (const json::parse_error& error) {
     throw FileError(file, lineAndColumn(text, error.byte), "invalid JSON: " + printable(withoutLocation(error.what())));
   } catch (const json::exception& error) {  // a number beyond the range of double, without a location

@@ -11,6 +11,7 @@
 #include "base/stopwatch.h"
 #include "scene/animation/material_states.h"
 #include "scene/animation/pose.h"
+#include "scene/geometry/texture_coordinates.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/animations.h"
 #include "scene/gltf/extensions.h"
@@ -21,6 +22,7 @@
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/texture.h"
 #include "scene/gltf/variants.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -55,6 +57,12 @@ void readSceneNodes(const Document& document, const NodeTree& tree, const Played
     const std::size_t firstCamera = scene.cameras.size(), firstLight = scene.lights.size();
     const bool visible = tree.visible[i] || animation.togglesNode(index);  // at any time
     if (visible) instances.addNode(index);
+    if (!isWithinLimits(vec3(tree.worldFromNode[i][3]))) {
+      if (node.camera != kNone || node.extensions.contains(kPunctualLights))
+        scene.report.ignored.push_back(fmt::format(
+            "/nodes/{}: its camera or light is more than {:g} m from the origin; ignored", index, kMaxCoordinate));
+      continue;
+    }
     if (node.camera != kNone) scene.cameras.push_back(readCamera(document, node.camera, node, tree.worldFromNode[i]));
     const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights);
     if (light && visible) readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
@@ -68,6 +76,22 @@ void readSceneNodes(const Document& document, const NodeTree& tree, const Played
       scene.lights[k].values = animation.lightValues(indexOf(*light, "light"));
     }
   }
+}
+
+// Copies the materials of primitives without the texture coordinates that their textures need.
+void removeTexturesWithoutUvs(const TextureTable& textures, Scene& scene) {
+  const std::vector<MaterialCopy> copies = copyMaterialsWithoutUvs(scene);
+  for (const MaterialCopy& copy : copies) {
+    // Without its texture, the roughness of a specular-glossiness material is that of the factor.
+    const TextureUse& before = scene.materials[static_cast<std::size_t>(copy.from)].metallicRoughnessTexture;
+    Material& material = scene.materials[static_cast<std::size_t>(copy.copy)];
+    if (!before.used() || material.metallicRoughnessTexture.used()) continue;
+    const int image = textures.textures()[static_cast<std::size_t>(before.texture)].image;
+    if (const auto& glossiness = textures.imageUses()[static_cast<std::size_t>(image)].glossiness)
+      material.roughness = 1.0f - *glossiness;
+  }
+  // The file was just read, so that no other scene shares its animation.
+  if (scene.nodeAnimation) animateCopies(*std::const_pointer_cast<NodeAnimation>(scene.nodeAnimation), copies);
 }
 
 // Frame 0.
@@ -91,19 +115,21 @@ void removeImages(const OpenFile& file, const std::vector<ImageFailure>& failure
   std::vector<MissingImage> missing;
   for (const auto& [image, problem] : problems) missing.push_back({image, problem});
   reportMissingImages(file.document, missing, scene.report);
-  makePrintable(scene.report);
 }
 
-// The second step. `replace`: use the factors of materials instead of images that cannot be read.
-void finishImages(const OpenFile& file, bool replace, Scene& scene) {
+// The second step. `replace`: use the factors of materials instead of images that cannot be read. `strict`: fail for images
+// with values that are repaired.
+void finishImages(const OpenFile& file, bool replace, bool strict, Scene& scene) {
   const Stopwatch decoding;
   const std::vector<ImageFailure> failures =
-      decodeImages(file.document, file.imageUses, scene.images, *file.document.budget);
+      decodeImages(file.document, file.imageUses, scene.images, scene.report.repaired, *file.document.budget);
   if (!failures.empty()) {
     const ImageFailure& first = failures.front();
     if (!replace) file.document.fail(first.location, first.problem, first.remedy);
     removeImages(file, failures, scene);
   }
+  makePrintable(scene.report);
+  if (strict) requireExact(file.document.file, scene.report);
   scene.seconds.images = decoding.seconds();
 }
 
@@ -129,6 +155,7 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
   readSceneNodes(document, tree, animation, instances, scene);
   scene.seconds.document = watch.lap();
   instances.finish(scene, *document.budget);
+  removeTexturesWithoutUvs(textures, scene);
   if (scene.nodeAnimation) startAnimation(scene);
   scene.seconds.meshes = watch.lap();
 
@@ -141,8 +168,8 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
   makePrintable(scene.report);
   if (options.strict) requireExact(path, scene.report);
   const bool described = describeImages(document, file->imageUses, scene.images);
-  const auto decode = [file, replace](Scene& pending) {
-    withMemoryErrors(file->document.file, [&] { finishImages(*file, replace, pending); });
+  const auto decode = [file, replace, strict = options.strict](Scene& pending) {
+    withMemoryErrors(file->document.file, [&] { finishImages(*file, replace, strict, pending); });
   };
   return {std::move(scene), described, decode};
 }

@@ -72,11 +72,14 @@ quat rotationOf(const tinygltf::Value& light, const std::string& location, Repor
 }
 
 std::array<io::Image, 6> decodeFaces(const Document& document, const tinygltf::Value& level,
-                                     const std::string& location) {
+                                     const std::string& location, Report& report) {
   std::array<io::Image, 6> faces;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto index = static_cast<std::size_t>(level.Get(static_cast<int>(i)).GetNumberAsInt());
-    faces[i] = toRadiance(loadImage(document, index, *document.budget).image);
+    io::Image face = loadImage(document, index, *document.budget).image;
+    if (std::string line = repairImage(document, static_cast<int>(index), face); !line.empty())
+      report.repaired.push_back(std::move(line));
+    faces[i] = toRadiance(face);
     if (faces[i].width != faces[0].width || faces[i].height != faces[0].width)
       document.fail(fmt::format("{}/specularImages/0/{}", location, i),
                     fmt::format("the image has {} x {} pixels; faces must be square and have the same size",
@@ -132,7 +135,7 @@ ImageBasedLight readImageBasedLight(const Document& document, int scene, bool re
   }
   const quat rotation = rotationOf(light, location, report);
   try {
-    const std::array<io::Image, 6> faces = decodeFaces(document, levels.Get(0), location);
+    const std::array<io::Image, 6> faces = decodeFaces(document, levels.Get(0), location, report);
     const std::size_t height = std::min(2 * faces[0].width, kLargestHeight);
     document.budget->take(2 * height * height * 3 * sizeof(float));
     result.environment.image = equirectangularFromCube(faces, rotation);

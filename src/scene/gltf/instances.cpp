@@ -11,6 +11,8 @@
 #include "base/plural.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extensions.h"
+#include "scene/model/limits.h"
+#include "scene/model/mesh_bounds.h"
 
 namespace quintet::scene {
 namespace {
@@ -37,6 +39,19 @@ Rank rankOf(const mat4& matrix) {
   for (std::size_t i = 0; i < 3; ++i)
     if (glm::length(glm::cross(column[i], column[(i + 1) % 3])) > kNoAngle) return Rank::plane;
   return Rank::less;
+}
+
+float largestCoordinate(const Mesh& mesh) {
+  float largest = 0.0f;
+  for (const Geometry& geometry : mesh.geometries)
+    for (const vec3& p : geometry.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return largest;
+}
+
+// A bound of the coordinates of points, whose coordinates are at most `radius`, after the transform.
+vec3 farthest(const mat4& transform, float radius) {
+  const auto column = [&](std::size_t i) { return glm::abs(vec3(transform[i])); };
+  return radius * (column(0) + column(1) + column(2)) + column(3);
 }
 
 bool hasJoints(const tinygltf::Mesh& mesh) {
@@ -102,6 +117,7 @@ void InstanceBuilder::addNode(int index) {
 Instance& InstanceBuilder::addInstance(int index, int pose, const mat4& worldFromObject) {
   if (instances_.size() == kMaxInstances)
     document_.fail(fmt::format("/nodes/{}", index), fmt::format("more than {} instances", kMaxInstances));
+  nodes_.push_back(index);
   Instance& instance = instances_.emplace_back();
   instance.name = document_.model.nodes[static_cast<std::size_t>(index)].name;
   instance.mesh = pose;
@@ -267,9 +283,24 @@ void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
     meshOf[i] = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(std::move(meshes[i]));
   }
-  for (Instance& instance : instances_) {
+  addInstances(meshOf, scene);
+}
+
+void InstanceBuilder::addInstances(const std::vector<int>& meshOf, Scene& scene) {
+  std::vector<float> radii;
+  for (const Mesh& mesh : scene.meshes) radii.push_back(largestCoordinate(mesh));
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    Instance& instance = instances_[i];
     instance.mesh = meshOf[static_cast<std::size_t>(instance.mesh)];
-    if (instance.mesh != kNone) scene.instances.push_back(std::move(instance));
+    if (instance.mesh == kNone) continue;
+    const auto m = static_cast<std::size_t>(instance.mesh);
+    if (!isWithinLimits(farthest(instance.worldFromObject, radii[m])) &&
+        !isWithinLimits(meshBounds(scene.meshes[m], instance.worldFromObject))) {
+      report_.ignored.push_back(fmt::format("/nodes/{}: the mesh extends more than {:g} m from the origin; ignored",
+                                            nodes_[i], kMaxCoordinate));
+      continue;
+    }
+    scene.instances.push_back(std::move(instance));
   }
 }
 

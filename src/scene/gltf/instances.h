@@ -46,6 +46,8 @@ class InstanceBuilder {
   void addRigid(int node, const Transform& transform);
   std::vector<mat4> jointMatrices(int node) const;
   std::vector<Transform> instanceTransforms(int node) const;
+  // Moves the instances to the scene. `meshOf`: the mesh of each pose. Those beyond the largest coordinate are ignored.
+  void addInstances(const std::vector<int>& meshOf, Scene&);
 
   const Document& document_;
   const NodeTree& tree_;
@@ -55,6 +57,7 @@ class InstanceBuilder {
   std::map<std::pair<int, std::vector<double>>, int> shared_;  // mesh and morph weights → index into poses_
   std::map<int, int> animated_;                                // node → index into poses_
   std::vector<Instance> instances_;                            // Instance::mesh is an index into poses_ until finish
+  std::vector<int> nodes_;                                     // of the instances
 };
 
 }  // namespace quintet::scene

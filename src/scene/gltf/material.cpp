@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "base/normal_float.h"
 #include "scene/gltf/extensions.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -32,7 +34,7 @@ class MaterialReader {
     else
       readMetallicRoughness();
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_emissive_strength"))
-      material_.emissive *= range(numberOf(*e, "emissiveStrength", 1.0), 0.0f, kHuge, "emissiveStrength");
+      multiplyEmission(range(numberOf(*e, "emissiveStrength", 1.0), 0.0f, kHuge, "emissiveStrength"));
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_ior")) {
       if (glossiness)
         ignoreForGlossiness("KHR_materials_ior");
@@ -105,12 +107,20 @@ class MaterialReader {
     material_.occlusionStrength = unit(from_.occlusionTexture.strength, "occlusionTexture/strength");
     // Not all exporters respect the specification's upper limit of 1, and a larger factor is harmless.
     for (std::size_t i = 0; i < 3; ++i)
-      material_.emissive[i] = range(from_.emissiveFactor[i], 0.0f, kHuge, "emissiveFactor");
+      material_.emissive[i] = range(from_.emissiveFactor[i], 0.0f, kMaxRadiance, "emissiveFactor");
     material_.emissiveTexture = texture(from_.emissiveTexture, "emissiveTexture");
     if (from_.alphaMode == "MASK") material_.alphaMode = AlphaMode::mask;
     if (from_.alphaMode == "BLEND") material_.alphaMode = AlphaMode::blend;
     material_.alphaCutoff = range(from_.alphaCutoff, 0.0f, kHuge, "alphaCutoff");
     material_.doubleSided = from_.doubleSided;
+  }
+
+  void multiplyEmission(float strength) {
+    const glm::dvec3 product = glm::dvec3(material_.emissive) * static_cast<double>(strength);
+    material_.emissive = vec3(glm::min(product, static_cast<double>(kMaxRadiance)));
+    const double largest = std::max({product.x, product.y, product.z});
+    if (largest > static_cast<double>(kMaxRadiance))
+      repair(fmt::format("an emission of {:g} is clamped to {:g}", largest, kMaxRadiance));
   }
 
   void readIor(const tinygltf::Value& extension) {
@@ -130,7 +140,7 @@ class MaterialReader {
     material_.thickness = range(numberOf(extension, "thicknessFactor", 0.0), 0.0f, kHuge, "thicknessFactor");
     const double distance = numberOf(extension, "attenuationDistance", std::numeric_limits<double>::infinity());
     if (distance > 0.0) {
-      material_.attenuationDistance = static_cast<float>(distance);
+      material_.attenuationDistance = distanceOrInfinity(distance);
     } else {
       repair(fmt::format("attenuationDistance {} is not positive, replaced by infinity", distance));
     }

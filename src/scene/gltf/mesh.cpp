@@ -16,6 +16,7 @@
 #include "scene/animation/deform.h"
 #include "scene/geometry/repair.h"
 #include "scene/geometry/tangents.h"
+#include "scene/geometry/texture_coordinates.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/compression.h"
 #include "scene/gltf/extensions.h"
@@ -354,7 +355,17 @@ GeometryResult readGeometry(const Document& document, const std::vector<Material
   }
   dropUnusedVertices(geometry);
   const bool flat = geometry.normals.empty();
-  if (geometry.material != kNone) addTangents(geometry, materials[static_cast<std::size_t>(geometry.material)]);
+  if (geometry.material != kNone) {
+    const Material& material = materials[static_cast<std::size_t>(geometry.material)];
+    const unsigned missing = missingUvSets(geometry, material);
+    for (unsigned set = 0; set < kMaxUvSets; ++set)
+      if (missing >> set & 1u)
+        result.repaired.push_back(fmt::format(
+            "{}: the textures of /materials/{} that use TEXCOORD_{} are ignored, because the primitive does "
+            "not have it",
+            location, geometry.material, set));
+    addTangents(geometry, withoutUvSets(material, missing));
+  }
   if (deformation.animated)
     finishDeformation(result.deformation, geometry, flat && !geometry.normals.empty(), deformation.jointCount > 0);
   result.geometry = std::move(geometry);

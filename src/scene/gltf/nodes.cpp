@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/normal_float.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "scene/geometry/repair.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extensions.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -214,16 +216,17 @@ Camera readCamera(const Document& document, int index, const tinygltf::Node& nod
   camera.name = from.name.empty() ? node.name : from.name;
   camera.worldFromCamera = rigidFrame(worldFromNode);
   if (from.type == "perspective") {
-    camera.verticalFov = static_cast<float>(from.perspective.yfov);
+    camera.verticalFov = normalFloat(from.perspective.yfov);
     if (!(camera.verticalFov > 0.0f && camera.verticalFov < kPi))
       document.fail(location + "/yfov", fmt::format("{} is not an angle between 0 and π", from.perspective.yfov));
-    camera.aspect = std::max(0.0f, static_cast<float>(from.perspective.aspectRatio));
+    camera.aspect = std::max(0.0f, normalFloat(from.perspective.aspectRatio));
   } else {
     camera.orthographic = true;
-    camera.orthographicHalfSize = glm::abs(vec2(from.orthographic.xmag, from.orthographic.ymag));
+    camera.orthographicHalfSize =
+        glm::abs(vec2(normalFloat(from.orthographic.xmag), normalFloat(from.orthographic.ymag)));
     if (!(camera.orthographicHalfSize.x > 0.0f && camera.orthographicHalfSize.y > 0.0f))
       document.fail(location, "xmag and ymag must not be zero");
-    camera.aspect = camera.orthographicHalfSize.x / camera.orthographicHalfSize.y;
+    camera.aspect = normalFloat(static_cast<double>(camera.orthographicHalfSize.x) / camera.orthographicHalfSize.y);
   }
   return camera;
 }
@@ -242,17 +245,20 @@ void readLight(const Document& document, int index, const tinygltf::Node& node, 
     return;
   }
   light.name = from.name.empty() ? node.name : from.name;
-  const vec3 color = from.color.empty() ? vec3(1.0f) : vec3(from.color[0], from.color[1], from.color[2]);
-  light.intensity = static_cast<float>(from.intensity) * color;
-  if (glm::any(glm::lessThan(light.intensity, vec3(0.0f))))
+  const dvec3 color = from.color.empty() ? dvec3(1.0) : dvec3(from.color[0], from.color[1], from.color[2]);
+  const dvec3 intensity = from.intensity * color;
+  if (glm::any(glm::lessThan(intensity, dvec3(0.0))))
     scene.report.repaired.push_back(location + ": negative intensity or color replaced by 0");
-  light.intensity = glm::max(light.intensity, vec3(0.0f));
+  if (const double largest = std::max({intensity.x, intensity.y, intensity.z}); largest > double{kMaxRadiance})
+    scene.report.repaired.push_back(
+        fmt::format("{}: an intensity of {:g} is clamped to {:g}", location, largest, kMaxRadiance));
+  light.intensity = vec3(glm::clamp(intensity, 0.0, double{kMaxRadiance}));
   light.position = vec3(worldFromNode[3]);
   light.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
   if (from.range < 0.0)
     scene.report.repaired.push_back(
         fmt::format("{}: range {} is not positive, replaced by infinity", location, from.range));
-  if (from.range > 0.0) light.range = static_cast<float>(from.range);
+  if (from.range > 0.0) light.range = distanceOrInfinity(from.range);
   if (light.type == LightType::directional) light.range = Light().range;
   if (light.type == LightType::spot) readSpot(from, location, light, scene.report);
   scene.lights.push_back(std::move(light));

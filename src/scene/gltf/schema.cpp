@@ -67,6 +67,7 @@ struct Property {
 // A range is given only where a value outside makes the data unusable. The material reader clamps factors to [0,1].
 
 constexpr double kMaxInt = 2147483647.0;
+constexpr double kMaxFloat = std::numeric_limits<float>::max();
 constexpr double kMaxBytes = 9007199254740991.0;  // 2^53 - 1: exact in JSON
 
 constexpr Collection kAccessors{"/accessors", "accessor"};
@@ -561,8 +562,8 @@ class Checker {
 
   json number(const json& in, const Property& property, const Location& location) const {
     if (!in.is_number()) fail(location, "must be a number");
-    const double d = in.get<double>();
-    if (!std::isfinite(static_cast<float>(d))) fail(location, "the number is too large");
+    // Numbers beyond the range of float stand for "no limit": 1.8e308 is the largest one of JavaScript.
+    const double d = std::clamp(in.get<double>(), -kMaxFloat, kMaxFloat);
     if (d < property.low || d > property.high)
       fail(location, fmt::format("{} is not in the range from {} to {}", d, property.low, property.high));
     return d;

@@ -35,7 +35,7 @@ struct ExtensionUse {
 
 struct CheckedSchema {
   // The part of the JSON that the table names. Its types and indices need no further checks. Integers written as 1.0
-  // become integers.
+  // become integers, and numbers beyond the range of float its largest numbers.
   nlohmann::json json;
   std::vector<UnreadProperty> unread;
   std::map<std::string, ExtensionUse> extensions;  // by name

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "io/codec.h"
 #include "scene/gltf/extensions.h"
+#include "scene/model/limits.h"
 #include "scene/model/material_textures.h"
 
 namespace quintet::scene {
@@ -194,13 +195,16 @@ bool describeImages(const Document& document, std::span<const ImageUse> uses, st
 }
 
 std::vector<ImageFailure> decodeImages(const Document& document, std::span<const ImageUse> uses,
-                                       std::vector<NamedImage>& images, MemoryBudget& budget) {
+                                       std::vector<NamedImage>& images, std::vector<std::string>& repaired,
+                                       MemoryBudget& budget) {
   images.resize(uses.size());
+  std::vector<std::string> repairs(uses.size());
   std::vector<ImageFailure> failures(uses.size());
   const std::vector<std::span<const std::byte>> unshared = unsharedBytes(document, uses);
   parallelFor(uses.size(), [&](std::size_t i) {
     try {
       images[i] = loadImage(document, static_cast<std::size_t>(uses[i].image), budget);
+      repairs[i] = repairImage(document, uses[i].image, images[i].image);
       if (uses[i].glossiness) toRoughness(images[i].image, *uses[i].glossiness);
     } catch (const FileError& error) {
       images[i] = {};
@@ -210,7 +214,17 @@ std::vector<ImageFailure> decodeImages(const Document& document, std::span<const
     releasePages(unshared[i]);
   });
   std::erase_if(failures, [](const ImageFailure& failure) { return failure.problem.empty(); });
+  for (std::string& line : repairs)
+    if (!line.empty() && std::ranges::find(repaired, line) == repaired.end()) repaired.push_back(std::move(line));
   return failures;
+}
+
+std::string repairImage(const Document& document, int image, io::Image& pixels) {
+  const std::string repair = repairTexels(pixels);
+  if (repair.empty()) return {};
+  const std::string& uri = document.images[static_cast<std::size_t>(image)].uri;
+  const std::string name = uri.empty() || isDataUri(uri) ? "" : percentDecode(uri) + ": ";
+  return fmt::format("/images/{}: {}{}", image, name, repair);
 }
 
 void removeTextures(Scene& scene, int image, std::optional<float> glossiness) {

@@ -74,11 +74,15 @@ struct ImageFailure {
   Remedy remedy = Remedy::omitTextures;
 };
 
-// Decodes and converts the images. Returns the failures, in the order of the uses; their images are empty. Returns the
+// Decodes and converts the images. Returns the failures, in the order of the uses; their images are empty. Appends lines about
+// images with values that cannot be used (limits.h) to `repaired`. Returns the
 // memory of each encoded image to the system once the image is decoded; the images of the document must not be read
 // afterwards. Throws MemoryError.
 std::vector<ImageFailure> decodeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images,
-                                       MemoryBudget&);
+                                       std::vector<std::string>& repaired, MemoryBudget&);
+
+// Repairs the values of an image of the file (limits.h). Returns the line for the report, or an empty text.
+std::string repairImage(const Document&, int image, io::Image&);
 
 // Materials no longer use the textures with this image of the scene, which becomes one white pixel. `glossiness`:
 // ImageUse::glossiness of the image.

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/plural.h"
+#include "scene/model/limits.h"
 #include "scene/model/material_textures.h"
 
 namespace quintet::scene {
@@ -50,6 +51,9 @@ void checkGeometry(const Scene& scene, const Geometry& geometry, const std::stri
   }
   const auto wrong = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return isFinite(p); });
   if (wrong != geometry.positions.end()) fail("{}.positions[{}]: not finite", name, wrong - geometry.positions.begin());
+  const auto far = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return isWithinLimits(p); });
+  if (far != geometry.positions.end())
+    fail("{}.positions[{}]: a coordinate is above {:g}", name, far - geometry.positions.begin(), kMaxCoordinate);
 }
 
 // The matrix must be affine and finite, with a finite inverse.
@@ -121,6 +125,8 @@ void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) 
 void checkInstance(const Scene& scene, const Instance& instance, const std::string& name) {
   if (!inRange(instance.mesh, scene.meshes.size())) fail("{}.mesh: {} of {}", name, instance.mesh, scene.meshes.size());
   if (!isFinite(instance.worldFromObject)) fail("{}.worldFromObject: not finite", name);
+  if (!isWithinLimits(instance.worldFromObject))
+    fail("{}.worldFromObject: a number is above {:g}", name, kMaxCoordinate);
   // A moving instance that is flattened or hidden is not visible at that frame.
   if (!instance.animated() && glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
     fail("{}.worldFromObject: singular", name);
@@ -157,7 +163,7 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
   checkUnit(material.anisotropy, "anisotropy");
   checkUnit(material.iridescence, "iridescence");
   for (int i = 0; i < 3; ++i) {
-    checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
+    checkRange(material.emissive[i], 0.0f, kMaxRadiance, "emissive");
     checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
     checkUnit(material.attenuationColor[i], "attenuationColor");
     checkUnit(material.multiscatterColor[i], "multiscatterColor");
@@ -211,12 +217,18 @@ void validateCamera(const Scene& scene, std::size_t index) {
   const Camera& camera = scene.cameras[index];
   if (!isFinite(camera.worldFromCamera))
     fail("{}.worldFromCamera: not finite", objectName("cameras", index, camera.name));
+  if (!isWithinLimits(camera.worldFromCamera))
+    fail("{}.worldFromCamera: a coordinate is above {:g}", objectName("cameras", index, camera.name), kMaxCoordinate);
 }
 
 void validateLight(const Scene& scene, std::size_t index) {
   const Light& light = scene.lights[index];
   if (!isFinite(light.intensity) || !isFinite(light.position) || !isFinite(light.direction))
     fail("{}: not finite", objectName("lights", index, light.name));
+  if (!isWithinLimits(light.position))
+    fail("{}: a coordinate of the position is above {:g}", objectName("lights", index, light.name), kMaxCoordinate);
+  if (!(std::max({light.intensity.x, light.intensity.y, light.intensity.z}) <= kMaxRadiance))
+    fail("{}: the intensity must be at most {:g}", objectName("lights", index, light.name), kMaxRadiance);
   if (!(light.range > 0.0f)) fail("{}: the range must be above 0", objectName("lights", index, light.name));
   constexpr float kRounding = 1e-6f;
   const float inner = light.innerConeAngle, outer = light.outerConeAngle;
@@ -226,6 +238,10 @@ void validateLight(const Scene& scene, std::size_t index) {
 }
 
 void validateEnvironment(const Scene& scene) {
+  const vec3& constant = scene.environment.constant;
+  if (!(glm::all(glm::greaterThanEqual(constant, vec3(0.0f))) &&
+        glm::all(glm::lessThanEqual(constant, vec3(kMaxRadiance)))))
+    fail("environment: the radiance must be from 0 to {:g}", kMaxRadiance);
   if (!scene.environment.image.empty()) checkImage(scene.environment.image, "environment.image");
 }
 

@@ -11,6 +11,7 @@
 #include "base/suggestion.h"
 #include "io/codec.h"
 #include "io/color.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -41,8 +42,20 @@ std::filesystem::path SceneTomlContext::resolvePath(const TomlValue& at, const s
 
 io::Image SceneTomlContext::readImage(const std::filesystem::path& path) {
   io::Image image = io::readImage(path, budget);
-  scene.report.files.push_back(path);
+  addImageFile(path, image);
   return image;
+}
+
+io::Image SceneTomlContext::readRadiance(const std::filesystem::path& path) {
+  io::Image image = io::readRadiance(path, budget);
+  addImageFile(path, image);
+  return image;
+}
+
+void SceneTomlContext::addImageFile(const std::filesystem::path& path, io::Image& image) {
+  scene.report.files.push_back(path);
+  if (const std::string repair = repairTexels(image); !repair.empty())
+    scene.report.repaired.push_back(fmt::format("{}: {}", path.filename().string(), repair));
 }
 
 int SceneTomlContext::findMaterial(const TomlValue& name) const {

@@ -62,6 +62,7 @@ struct SceneTomlContext {
   std::filesystem::path resolvePath(const TomlValue& at, const std::string& path) const;
   // Reads an image within the memory budget, and adds the file to those of the scene. Throws FileError, MemoryError.
   io::Image readImage(const std::filesystem::path& file);
+  io::Image readRadiance(const std::filesystem::path& file);  // as linear floats
   // Index of a material. Reports an unknown name.
   int findMaterial(const TomlValue& name) const;
   // Index of the default material (matte, gray), which is added to the scene when it is first used.
@@ -77,6 +78,9 @@ struct SceneTomlContext {
   void addTarget(const TomlValue& at, const std::string& name, InstanceTarget target);
 
  private:
+  // Repairs the values of an image that was read, and adds it to the report.
+  void addImageFile(const std::filesystem::path& file, io::Image&);
+
   int defaultMaterial_ = kNone;
   std::map<std::string, int> objects_;
 };

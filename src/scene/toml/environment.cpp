@@ -2,13 +2,15 @@
 // [environment], with its keyframes.
 #include <fmt/format.h>
 
-#include "io/codec.h"
 #include "scene/defaults/default_environment.h"
+#include "scene/model/limits.h"
 #include "scene/toml/context.h"
 #include "scene/toml/keyframes.h"
 
 namespace quintet::scene {
 namespace {
+
+constexpr NumberRange kRadiance{0.0, static_cast<double>(kMaxRadiance)};
 
 // The keys that keyframes can change, in the units of the file.
 struct EnvironmentKeys {
@@ -41,11 +43,10 @@ void readEnvironment(SceneTomlContext& context, TomlReader& root) {
   if (!source) reader.fail("[environment] needs 'image', 'color', 'default = true' or 'none = true'");
   if (reader.has("image")) {
     const std::filesystem::path file = context.resolvePath(*source, reader.toText(*source, "image"));
-    environment.image = io::readRadiance(file, context.budget);
-    context.scene.report.files.push_back(file);
+    environment.image = context.readRadiance(file);
     environment.name = file.filename().string();
   } else if (reader.has("color")) {
-    environment.constant = toColor(reader, *source, "color", kNotNegative);
+    environment.constant = toColor(reader, *source, "color", kRadiance);
   } else {
     const std::string key = reader.has("default") ? "default" : "none";
     if (!reader.boolean(key)) reader.fail(*source, fmt::format("'{}' of [environment] must be true", key));

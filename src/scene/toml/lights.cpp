@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/normal_float.h"
+#include "scene/model/limits.h"
 #include "scene/toml/context.h"
 #include "scene/toml/keyframes.h"
 
@@ -30,11 +32,12 @@ struct LightKind {
 LightKeys readKeys(TomlReader& reader, const LightKind& kind, LightKeys keys) {
   keys.color = readColor(reader, "color", keys.color, kNotNegative);
   keys.intensity = reader.number("intensity", keys.intensity, kNotNegative);
-  if (!isFinite(keys.color * keys.intensity))
-    reader.fail(fmt::format("the intensity of {} is too large", reader.what()));
+  if (const vec3 product = keys.color * keys.intensity; !(std::max({product.x, product.y, product.z}) <= kMaxRadiance))
+    reader.fail(fmt::format("the intensity of {} is too large; at most {:g}", reader.what(), kMaxRadiance));
   if (kind.type != LightType::directional) {
     keys.position = reader.triple("position", keys.position);
-    keys.range = reader.number("range", keys.range, kPositive);
+    if (const TomlValue* const range = reader.find("range"))
+      keys.range = distanceOrInfinity(reader.toNumber(*range, "range", kPositive));
   }
   if (kind.hasTarget) {
     keys.direction = reader.triple("target", keys.direction);

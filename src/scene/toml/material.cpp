@@ -3,9 +3,12 @@
 // snake_case.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
+#include "base/normal_float.h"
+#include "scene/model/limits.h"
 #include "scene/toml/context.h"
 #include "scene/toml/keyframes.h"
 
@@ -106,8 +109,9 @@ void readBaseColor(TomlReader& reader, Material& m) {
 void readEmission(TomlReader& reader, MaterialKeys& keys) {
   keys.emissive = readColor(reader, "emissive", keys.emissive, kNotNegative);
   keys.emissiveStrength = reader.number("emissive_strength", keys.emissiveStrength, kNotNegative);
-  if (!isFinite(keys.emissive * keys.emissiveStrength))
-    reader.fail(fmt::format("the emission of {} is too large", reader.what()));
+  const vec3 product = keys.emissive * keys.emissiveStrength;
+  if (!(std::max({product.x, product.y, product.z}) <= kMaxRadiance))
+    reader.fail(fmt::format("the emission of {} is too large; at most {:g}", reader.what(), kMaxRadiance));
 }
 
 // Transmission and the volume inside.
@@ -117,7 +121,8 @@ void readTransmission(TomlReader& reader, Material& m) {
   m.diffuseTransmission = reader.number("diffuse_transmission", m.diffuseTransmission, kUnit);
   m.diffuseTransmissionColor = readColor(reader, "diffuse_transmission_color", m.diffuseTransmissionColor, kUnit);
   m.thickness = reader.number("thickness", m.thickness, kNotNegative);
-  m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
+  if (const TomlValue* const distance = reader.find("attenuation_distance"))
+    m.attenuationDistance = distanceOrInfinity(reader.toNumber(*distance, "attenuation_distance", kPositive));
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);
   m.dispersion = reader.number("dispersion", m.dispersion, kNotNegative);
   m.multiscatterColor = readColor(reader, "multiscatter_color", m.multiscatterColor, kUnit);

@@ -8,6 +8,7 @@
 #include "base/memory_budget.h"
 #include "scene/animation/material_states.h"
 #include "scene/animation/pose.h"
+#include "scene/geometry/texture_coordinates.h"
 #include "scene/model/validate.h"
 #include "scene/toml/context.h"
 
@@ -50,6 +51,24 @@ void finishAnimation(SceneTomlContext& context) {
   }
 }
 
+// Textures are ignored where a mesh does not have the texture coordinates that they use.
+void removeTexturesWithoutUvs(SceneTomlContext& context) {
+  Scene& scene = context.scene;
+  for (const Mesh& mesh : scene.meshes)
+    for (const Geometry& geometry : mesh.geometries) {
+      if (geometry.material == kNone) continue;
+      const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
+      const unsigned missing = missingUvSets(geometry, material);
+      for (int set = 0; set < kMaxUvSets; ++set)
+        if (missing >> set & 1u)
+          scene.report.repaired.push_back(
+              fmt::format("mesh '{}': the textures of material '{}' that use set {} are ignored, because the mesh does "
+                          "not have these texture coordinates",
+                          mesh.name, material.name, set));
+    }
+  animateCopies(context.animation, copyMaterialsWithoutUvs(scene));
+}
+
 Scene read(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
   rejectGltfOptions(file, options);
   SceneTomlContext context(file, options);
@@ -67,6 +86,7 @@ Scene read(std::string_view text, const std::filesystem::path& file, const LoadO
   readCameras(context, root);
   readEnvironment(context, root);
   root.rejectUnknownKeys();
+  removeTexturesWithoutUvs(context);
   finishAnimation(context);
   makePrintable(context.scene.report);
   if (options.strict) requireExact(file, context.scene.report);

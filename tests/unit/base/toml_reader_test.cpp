@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "base/error.h"
 
@@ -99,7 +100,39 @@ TEST(TomlReader, RejectsNumbersThatAreNotInTheRange) {
   };
   EXPECT_TRUE(within("0", kUnit) && within("1", kUnit) && within("1e30", kAnyNumber) && within("0", kNotNegative));
   EXPECT_FALSE(within("1.001", kUnit) || within("-1e-9", kUnit) || within("0", kPositive) || within("nan", kAnyNumber));
-  EXPECT_FALSE(within("inf", kAnyNumber) || within("1e39", kAnyNumber) || within("'1'", kAnyNumber));
+  EXPECT_FALSE(within("'1'", kAnyNumber) || within("inf", kUnit) || within("-1e300", kNotNegative));
+}
+
+float numberOf(const std::string& number, const NumberRange& range) {
+  const TomlValue value = parseToml("a = " + number, "t.toml");
+  return TomlReader(value, "[table]", "t.toml").number("a", 0.0f, range);
+}
+
+// Numbers beyond float are its largest ones, and none that is not 0 becomes 0 or a limit that is excluded.
+TEST(TomlReader, KeepsTheMeaningOfNumbersBeyondFloat) {
+  constexpr float kLargest = std::numeric_limits<float>::max(), kSmallest = std::numeric_limits<float>::min();
+  for (const char* number : {"1e39", "1.7976931348623157e308", "inf"}) {
+    EXPECT_EQ(numberOf(number, kAnyNumber), kLargest);
+    EXPECT_EQ(numberOf(number, kPositive), kLargest);
+    EXPECT_EQ(numberOf(std::string("-") + number, kAnyNumber), -kLargest);
+  }
+  EXPECT_EQ(numberOf("1e-320", kPositive), kSmallest);
+  EXPECT_EQ(numberOf("-1e-45", kAnyNumber), -kSmallest);
+  EXPECT_EQ(numberOf("0", kNotNegative), 0.0f);
+  EXPECT_LT(numberOf("0.99999999999", {-1.0, 1.0, true, true}), 1.0f);
+  EXPECT_GT(numberOf("-0.99999999999", {-1.0, 1.0, true, true}), -1.0f);
+}
+
+TEST(TomlReader, ReadsIntegersThatAreWrittenAsReals) {
+  const auto integer = [](const std::string& text) {
+    const TomlValue value = parseToml("a = " + text, "t.toml");
+    return TomlReader(value, "[table]", "t.toml").integer("a", 0, 1, 4294967295);
+  };
+  EXPECT_EQ(integer("4.0"), 4u);
+  EXPECT_EQ(integer("1e0"), 1u);
+  EXPECT_EQ(integer("4294967295"), 4294967295u);
+  for (const char* wrong : {"1.5", "0.0", "nan", "inf", "1e10", "'1'", "true"})
+    EXPECT_THROW(integer(wrong), FileError) << wrong;
 }
 
 TEST(TomlReader, NormalizesDirections) {

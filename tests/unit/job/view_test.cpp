@@ -3,12 +3,15 @@
 #include "job/view.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/exr/exr.h"
 #include "scene/defaults/default_environment.h"
+#include "scene/model/limits.h"
 #include "temp_folder.h"
 
 namespace quintet::job {
@@ -144,6 +147,27 @@ TEST(ChooseEnvironment, UsesTheFirstSpecified) {
   EXPECT_FLOAT_EQ(colored.rotation, kPi / 2);
   request.source = "no/such/sky.hdr";
   EXPECT_THROW(chooseEnvironment(scene, request), FileError);
+}
+
+TEST(ChooseEnvironment, ClampsTexelsThatAreNotFinite) {
+  const quintet::test::TempFolder folder;
+  io::ExrImage image{3, 2, {}};
+  for (const char* name : {"R", "G", "B"})
+    image.channels.push_back({name, io::ExrType::f32, std::vector<float>(6, 1.0f)});
+  image.channels[0].samples[4] = std::numeric_limits<float>::infinity();
+  writeFile(folder / "sky.exr", io::encodeExr(image));
+  EnvironmentRequest request;
+  request.source = folder / "sky.exr";
+  const EnvironmentChoice chosen = chooseEnvironment(makeScene(), request);
+  EXPECT_EQ(chosen.environment.image.pixel<float>(1, 1)[0], scene::kMaxRadiance);
+  EXPECT_NE(chosen.repair.find("sky.exr: 1 pixel is NaN, infinite or above 1e+12"), std::string::npos) << chosen.repair;
+  EXPECT_NE(chosen.repair.find("(1, 1)"), std::string::npos) << chosen.repair;
+  request.source = "1e12,0,0";
+  EXPECT_EQ(chooseEnvironment(makeScene(), request).repair, "");
+  for (const char* wrong : {"1e13,0,0", "1,inf,1", "1,nan,1", "0,0,1e39"}) {
+    request.source = wrong;
+    EXPECT_THROW(chooseEnvironment(makeScene(), request), UsageError) << wrong;
+  }
 }
 
 // The header states 192 MiB of pixels, which do not follow.
