@@ -160,6 +160,25 @@ TEST(ApiScene, MessagesNameTheObject) {
               AllOf(HasSubstr("environment"), HasSubstr("pixel (1, 0)")));
 }
 
+// Values above the largest radiance or coordinate would make sums over samples infinite.
+TEST(ApiScene, RejectsValuesAboveTheLimitsOfTheRenderer) {
+  Scene scene = lampScene();
+  const std::array<float, 4> texels{1, 1e12f, 1e20f, 0};
+  EXPECT_THAT(messageOf([&] {
+                scene.addTexture(
+                    {.name = "sky", .width = 4, .height = 1, .channels = 1, .pixels = std::span<const float>(texels)});
+              }),
+              HasSubstr("texture 'sky': pixel (2, 0) is 1e+20, above 1e+12"));
+  EXPECT_THAT(messageOf([&] { scene.addLight({.intensity = {0, 1e13f, 0}, .name = "sun"}); }), HasSubstr("1e+12"));
+  EXPECT_THAT(messageOf([&] {
+                scene.addMaterial({.name = "lamp", .emissive = {1e20f, 0, 0}});
+              }),
+              HasSubstr("emissive"));
+  EXPECT_THAT(messageOf([&] { scene.setEnvironment({.radiance = {1e13f, 0, 0}}); }), HasSubstr("1e+12"));
+  EXPECT_THAT(messageOf([&] { scene.setTransform(1, Transform::scaling({1, 1e20f, 1})); }), HasSubstr("'lamp'"));
+  scene.setEnvironment({.radiance = {1e12f, 0, 0}});
+}
+
 TEST(ApiScene, RendersLikeTheSameSceneInAFile) {
   Scene memory;
   const std::array<Float2, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};

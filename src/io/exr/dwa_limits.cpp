@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "io/exr/read.h"
 
@@ -51,32 +52,36 @@ std::size_t DwaLimits::blockIndex(std::size_t coordinate) const {
   return coordinate / tileSize_ * perTile + coordinate % tileSize_ / kDctBlock;
 }
 
+// Returns the coordinates of a column or row of blocks, from first up to end.
+std::pair<std::size_t, std::size_t> DwaLimits::pixelsOf(std::size_t block, std::size_t size) const {
+  if (tileSize_ == 0) return {block * kDctBlock, std::min((block + 1) * kDctBlock, size)};
+  const std::size_t perTile = (tileSize_ + kDctBlock - 1) / kDctBlock;
+  const std::size_t tile = block / perTile * tileSize_, first = tile + block % perTile * kDctBlock;
+  return {first, std::min({first + kDctBlock, tile + tileSize_, size})};
+}
+
 void DwaLimits::clamp(const ExrChannel& channel, std::size_t first, std::span<float> rows) const {
   if (std::ranges::find(lossy_, &channel) == lossy_.end()) return;
-  for (float& v : rows)
-    if (std::isfinite(v)) v = std::clamp(v, -kMaxDwaValue, kMaxDwaValue);
-  if (limits_.empty()) return;
-  const std::string_view layer = exrLayerOf(channel.name);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t x = (first + i) % image_.width, y = (first + i) / image_.width;
-    const auto limit = limits_.find({layer, blockIndex(x), blockIndex(y)});
-    if (limit != limits_.end() && std::isfinite(rows[i])) rows[i] = std::clamp(rows[i], -limit->second, limit->second);
+  const auto limitTo = [](float& v, float limit) {
+    if (std::isfinite(v)) v = std::clamp(v, -limit, limit);
+  };
+  for (float& v : rows) limitTo(v, kMaxDwaValue);
+  const std::size_t width = image_.width, firstRow = first / width, endRow = firstRow + rows.size() / width;
+  for (const auto& [block, limit] : limits_) {
+    const auto& [layer, column, row] = block;
+    if (layer != exrLayerOf(channel.name)) continue;
+    const auto [left, right] = pixelsOf(column, width);
+    const auto [top, bottom] = pixelsOf(row, image_.height);
+    for (std::size_t y = std::max(top, firstRow); y < std::min(bottom, endRow); ++y)
+      for (std::size_t x = left; x < right; ++x) limitTo(rows[(y - firstRow) * width + x], limit);
   }
 }
 
 // Of all channels of the layer, because DWA encodes red, green and blue as luminance and chroma.
 float DwaLimits::largestIn(const Block& block) const {
   const auto& [layer, column, row] = block;
-  const auto range = [&](std::size_t index, std::size_t size) {
-    const std::size_t perTile = (tileSize_ + kDctBlock - 1) / kDctBlock;
-    const std::size_t begin =
-        tileSize_ == 0 ? index * kDctBlock : index / perTile * tileSize_ + index % perTile * kDctBlock;
-    std::size_t end = begin + kDctBlock;
-    if (tileSize_ > 0) end = std::min(end, (begin / tileSize_ + 1) * tileSize_);
-    return std::pair(begin, std::min(end, size));
-  };
-  const auto [left, right] = range(column, image_.width);
-  const auto [top, bottom] = range(row, image_.height);
+  const auto [left, right] = pixelsOf(column, image_.width);
+  const auto [top, bottom] = pixelsOf(row, image_.height);
   float largest = 0.0f;
   for (const ExrChannel* channel : lossy_) {
     if (exrLayerOf(channel->name) != layer) continue;

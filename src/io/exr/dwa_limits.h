@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "io/exr/exr.h"
@@ -43,6 +44,7 @@ class DwaLimits {
   using Block = std::tuple<std::string_view, std::size_t, std::size_t>;  // layer, column, row
 
   std::size_t blockIndex(std::size_t coordinate) const;
+  std::pair<std::size_t, std::size_t> pixelsOf(std::size_t block, std::size_t size) const;
   float largestIn(const Block& block) const;
 
   const ExrImage& image_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <limits>
 #include <numeric>
 
 #include "render/lights/alias_table.h"
@@ -147,6 +148,7 @@ struct LightTableBuilder::Collector {
     double total = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (!(weights[i] > 0.0f)) bounds[i].bounds.intensity = 0.0f;
+      bounds[i].bounds.intensity = std::min(bounds[i].bounds.intensity, std::numeric_limits<float>::max());
       total += bounds[i].bounds.intensity;
     }
     for (LightTreeInput& input : bounds)
