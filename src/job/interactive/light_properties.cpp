@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/suggestion.h"
+#include "scene/model/limits.h"
 
 namespace quintet::job::interactive {
 namespace {
@@ -30,7 +31,7 @@ vec3 toVec3(std::span<const double> v) { return {v[0], v[1], v[2]}; }
 
 void setIntensity(Light& light, std::span<const double> values) {
   const double intensity = values[0];
-  if (!(intensity >= 0.0 && intensity <= static_cast<double>(scene::kMaxRadiance)))
+  if (!(intensity >= 0.0 && static_cast<float>(intensity) <= scene::kMaxRadiance))
     failProperty("intensity", "a number from 0 to 1e12");
   if (static_cast<float>(intensity) != lightIntensity(light))
     light.intensity = static_cast<float>(intensity) * lightColor(light);

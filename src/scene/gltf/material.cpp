@@ -119,7 +119,7 @@ class MaterialReader {
     const glm::dvec3 product = glm::dvec3(material_.emissive) * static_cast<double>(strength);
     material_.emissive = vec3(glm::min(product, static_cast<double>(kMaxRadiance)));
     const double largest = std::max({product.x, product.y, product.z});
-    if (largest > static_cast<double>(kMaxRadiance))
+    if (static_cast<float>(largest) > kMaxRadiance)
       repair(fmt::format("an emission of {:g} is clamped to {:g}", largest, kMaxRadiance));
   }
 
@@ -243,8 +243,7 @@ class MaterialReader {
 
   float range(double value, float low, float high, const char* key) {
     const float clamped = std::clamp(static_cast<float>(value), low, high);
-    if (static_cast<double>(clamped) != value &&
-        (value < static_cast<double>(low) || value > static_cast<double>(high)))
+    if (static_cast<float>(value) != clamped)
       repair(fmt::format("{} {} is out of range, clamped to {}", key, value, clamped));
     return clamped;
   }

@@ -249,7 +249,8 @@ void readLight(const Document& document, int index, const tinygltf::Node& node, 
   const dvec3 intensity = from.intensity * color;
   if (glm::any(glm::lessThan(intensity, dvec3(0.0))))
     scene.report.repaired.push_back(location + ": negative intensity or color replaced by 0");
-  if (const double largest = std::max({intensity.x, intensity.y, intensity.z}); largest > double{kMaxRadiance})
+  if (const double largest = std::max({intensity.x, intensity.y, intensity.z});
+      static_cast<float>(largest) > kMaxRadiance)
     scene.report.repaired.push_back(
         fmt::format("{}: an intensity of {:g} is clamped to {:g}", location, largest, kMaxRadiance));
   light.intensity = vec3(glm::clamp(intensity, 0.0, double{kMaxRadiance}));

@@ -10,7 +10,7 @@
 namespace quintet::scene {
 namespace {
 
-constexpr NumberRange kRadiance{0.0, static_cast<double>(kMaxRadiance)};
+constexpr NumberRange kRadiance{0.0, 1e12};  // kMaxRadiance as a decimal number
 
 // The keys that keyframes can change, in the units of the file.
 struct EnvironmentKeys {
