@@ -7,18 +7,25 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/stopwatch.h"
 #include "base/text.h"
 
 namespace quintet {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kPollInterval{50};
 
 // The same for all names of one file. The name contains a hash, because the file's name may be too long for a suffix.
 fs::path lockPath(const fs::path& file) {
@@ -55,7 +62,9 @@ void writeOwner(int fd) {
 
 }  // namespace
 
-FileLock::FileLock(const fs::path& file) : path_(lockPath(file)) {
+FileLock::FileLock(const fs::path& file, double seconds, const Note& note) : path_(lockPath(file)) {
+  const Stopwatch clock;
+  bool noted = false;
   while (fd_ < 0) {
     fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (fd_ < 0) throw FileError(file, "cannot be locked: " + std::generic_category().message(errno));
@@ -67,7 +76,12 @@ FileLock::FileLock(const fs::path& file) : path_(lockPath(file)) {
       if (errno != EWOULDBLOCK) return;  // a file system without locks
       const std::string owner = ownerOf(fd_);
       ::close(std::exchange(fd_, -1));
-      throw FileError(file, "is in use by " + owner + "; wait until it ends, or choose a different file");
+      if (clock.seconds() >= seconds)
+        throw FileError(file, "is in use by " + owner + "; wait until it ends, or choose a different file");
+      if (!std::exchange(noted, true) && note)
+        note(fmt::format("{}: is in use by {}; waiting up to {:g} s for its end", file.string(), owner, seconds));
+      std::this_thread::sleep_for(kPollInterval);
+      continue;
     }
     if (!stillNames(fd_, path_)) ::close(std::exchange(fd_, -1));
   }

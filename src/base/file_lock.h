@@ -6,14 +6,19 @@
 #define QUINTET_BASE_FILE_LOCK_H
 
 #include <filesystem>
+#include <functional>
+#include <string>
 
 namespace quintet {
 
 class FileLock {
  public:
-  // Throws FileError that names `file` and the process that holds the lock, if it is known. On a file system without
-  // locks, nothing is locked.
-  explicit FileLock(const std::filesystem::path& file);
+  using Note = std::function<void(const std::string& text)>;
+
+  // Throws FileError that names `file` and the process that holds the lock, if it is known. A process that was killed holds
+  // it until the system has ended all of its threads and the driver's. So the constructor waits up to `seconds` for the lock;
+  // it calls `note` once before it waits. On a file system without locks, nothing is locked.
+  explicit FileLock(const std::filesystem::path& file, double seconds = 0, const Note& note = {});
   // Releases the lock and removes its file.
   ~FileLock();
   FileLock(const FileLock&) = delete;

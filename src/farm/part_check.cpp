@@ -186,13 +186,13 @@ void requireUsable(const Plan& plan, const std::vector<PartCheck>& checks,
         text.empty() ? "" : ": ", text));
   }
   for (const std::filesystem::path& file : unexpected)
-    problems.push_back(fmt::format("{}: is not a part of this plan", file.string()));
+    problems.push_back(fmt::format("{}: is not a part of this plan; remove it", file.string()));
   if (problems.empty()) return;
   std::string text =
       fmt::format("{}: {} of {} usable", (plan.folder / kPlanFile).string(), usable, counted(checks.size(), "part"));
   for (std::size_t i = 0; i < std::min(problems.size(), kShownProblems); ++i) text += "; " + problems[i];
   if (problems.size() > kShownProblems) text += fmt::format("; and {} more", problems.size() - kShownProblems);
-  throw Error(text);
+  throw Error(text + "; run submit.sh or parallel.sh of the plan again to render what is missing or damaged");
 }
 
 void writeFrameList(const Plan& plan, std::size_t part, const std::vector<WrittenFrame>& frames) {

@@ -4,14 +4,17 @@
 #define QUINTET_FARM_PART_LOCK_H
 
 #include <cstddef>
+#include <functional>
+#include <string>
 
 #include "farm/plan.h"
 
 namespace quintet::farm {
 
-// Waits until no process holds the lock, for example because one that was killed has not ended yet. Throws the FileError of
-// the lock, which names the process, if it is still held after so many seconds.
-void waitUntilFree(const Plan& plan, std::size_t part, double seconds);
+// Waits until no process holds the lock, as FileLock does. Throws its FileError if the lock is still held after so many
+// seconds.
+void waitUntilFree(const Plan& plan, std::size_t part, double seconds,
+                   const std::function<void(const std::string& text)>& note = {});
 
 }  // namespace quintet::farm
 #endif

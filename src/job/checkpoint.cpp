@@ -50,6 +50,10 @@ std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const
     if (!render::sameArrays(file.film, empty)) throw FileError(path, "its outputs differ from those of the program");
     checkSamples(path, file.film, start, limits);
   } catch (const FileError& error) {
+    if (!request.force) throw FileError(path, error.location(), error.problem(), Remedy::startOver);
+    observer.note(fmt::format("{}; starting over", error.what()));
+    return std::nullopt;
+  } catch (const MemoryError& error) {  // a damaged header can request any size
     if (!request.force) throw;
     observer.note(fmt::format("{}; starting over", error.what()));
     return std::nullopt;
@@ -64,6 +68,10 @@ std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const
   if (file.film.counts.ranges.empty()) return std::nullopt;
   return stored;
 }
+
+Checkpoint::Checkpoint(CheckpointRequest request, Observer& observer)
+    : request_(std::move(request)),
+      lock_(request_.file, request_.waitSeconds, [&](const std::string& text) { observer.note(text); }) {}
 
 std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const render::FilmState& empty,
                                            const StartPoint& start, const RenderLimits& limits, Observer& observer,

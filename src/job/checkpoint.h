@@ -26,8 +26,9 @@ std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const
 
 class Checkpoint {
  public:
-  // Locks the file until the destruction. Throws FileError if another process uses it.
-  explicit Checkpoint(CheckpointRequest request) : request_(std::move(request)), lock_(request_.file) {}
+  // Locks the file until the destruction. Throws FileError if another process uses it for more than
+  // CheckpointRequest::waitSeconds.
+  Checkpoint(CheckpointRequest request, Observer& observer);
 
   // Like loadCheckpoint(). Also removes temporary files that an interrupted save() left behind.
   std::optional<StoredFilm> load(const Provenance& expected, const render::FilmState& empty, const StartPoint& start,

@@ -57,20 +57,30 @@ std::string joinLayers(const std::string& a, const std::string& b) {
   return layers.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// Returns read(). What is wrong with the file itself is gone when the part is rendered again.
+template <class Read>
+auto readPart(const Read& read) {
+  try {
+    return read();
+  } catch (const FileError& error) {
+    throw FileError(error.file(), error.location(), error.problem() + "; render this part again");
+  }
+}
+
 class Merger {
  public:
   Merger(Observer& observer, std::size_t maxMemory) : observer_(observer), maxMemory_(maxMemory) {}
 
   void add(const std::filesystem::path& path) {
     observer_.stage("reading " + path.string());
-    render::FilmReader reader(path);
+    render::FilmReader reader = readPart([&] { return render::FilmReader(path); });
     const FilmFile& part = reader.header();
     const Provenance provenance = provenanceOf(part, path);
     const std::vector<SampleRange> ranges = part.film.counts.ranges;
     const std::uint64_t firstSample =
         ranges.empty() ? std::numeric_limits<std::uint64_t>::max() : std::uint64_t{ranges.front().begin};
     if (first_.empty()) {
-      whole_ = reader.read(maxMemory_);
+      whole_ = readPart([&] { return reader.read(maxMemory_); });
       provenance_ = provenance;
       first_ = path;
       firstSample_ = firstSample;
@@ -88,7 +98,7 @@ class Merger {
     if (!reader.hasArraysOf(whole_.film))
       throw FileError(path, fmt::format("its outputs differ from those of {}", first_.string()));
     try {
-      reader.addTo(whole_.film);
+      readPart([&] { reader.addTo(whole_.film); });
       join(path, provenance, firstSample < firstSample_);
     } catch (const UsageError& error) {
       throw FileError(path, error.what());

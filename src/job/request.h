@@ -93,6 +93,7 @@ struct CheckpointRequest {
   bool keep = false;           // leave a complete checkpoint behind when the images are written
   bool resume = false;         // continue from the checkpoint if it exists
   bool force = false;          // start over, and overwrite a checkpoint of a different render
+  double waitSeconds = 10.0;   // for the end of a process that uses the file: one that was killed takes a moment
 };
 
 // What the program prints (debugPrintfEXT) goes to Observer::printed(). Without a request it is discarded, at no cost.

@@ -12,6 +12,8 @@
 #include <sstream>
 #include <thread>
 
+#include <gmock/gmock.h>
+
 #include "base/file.h"
 #include "base/temporary_file.h"
 #include "fixtures.h"
@@ -21,6 +23,9 @@
 
 namespace quintet::test {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 class Checkpoint : public CliTest {
  protected:
@@ -255,14 +260,29 @@ TEST_F(Checkpoint, RemovesLeftoversOfKilledProcesses) {
 TEST_F(Checkpoint, BelongsToOneProcessAtATime) {
   TerminalRun first(command({"--checkpoint", "0", "--json-progress", "--spp", "16000000"}), folder_.path());
   ASSERT_TRUE(first.waitFor("\"samples\":8,"));  // the file was replaced after it was locked
-  for (const char* more : {"--resume", "--force"})
-    expectError(quintet(command({"--checkpoint", "60", more, "--spp", "16000000", "-q"})), 1,
-                {"out.checkpoint.qfilm: is in use by process ", " on "});
+  const RunResult second = quintet(command({"--checkpoint", "60", "--resume", "--spp", "16000000"}));
+  EXPECT_EQ(second.status, 1);
+  EXPECT_THAT(second.err,
+              AllOf(HasSubstr("out.checkpoint.qfilm: is in use by process "), HasSubstr("waiting up to 10 s"),
+                    HasSubstr("quintet: out.checkpoint.qfilm: is in use by process ")));
   expectError(quintet(command({"--checkpoint-file", kFile, "-o", "other.png", "-q", "--force"})), 1, {"is in use by"});
   first.signal(SIGKILL);
   first.finish();
   ASSERT_EQ(quintet(command({"--checkpoint", "60", "--spp", "4", "-q", "--force"})).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / kFile));
+}
+
+// The killed process is the supervisor; the one that renders ends after it, and holds the lock until then.
+TEST_F(Checkpoint, ResumesDirectlyAfterAKill) {
+  for (int kill = 0; kill < 3; ++kill) {
+    PipeRun first(command({"--checkpoint", "0", "--resume", "--json-progress", "--spp", "16000000"}),
+                  {.folder = folder_.path()});
+    ASSERT_TRUE(first.waitFor("\"samples\":"));
+    first.kill();
+    const RunResult next = quintet(command({"--resume", "--spp", "16000000", "--time", "0"}));
+    EXPECT_EQ(next.status, 0) << next.err;
+    EXPECT_THAT(next.err, HasSubstr("resuming after "));
+  }
 }
 
 TEST_F(Checkpoint, RejectsADifferentRenderByFact) {
@@ -346,10 +366,11 @@ TEST_F(Checkpoint, RejectsDifferentVersionsAndDamagedFiles) {
   render::writeFilm(folder_ / kFile, file);
   expectError(quintet(command({"--resume", "-q"})), 1, {"out.checkpoint.qfilm: ", " 0.0.9, expected 0."});
   std::filesystem::resize_file(folder_ / kFile, 1000);
-  expectError(quintet(command({"--resume", "-q"})), 1, {"out.checkpoint.qfilm: ", "1000 bytes"});
+  expectError(quintet(command({"--resume", "-q"})), 1,
+              {"out.checkpoint.qfilm: ", "1000 bytes", "; use --force to start over"});
   write(folder_ / kFile, "not a film");
-  expectError(quintet(command({"--resume", "-q"})), 1, {"out.checkpoint.qfilm: ", ".qfilm)"});
-  expectError(quintet(command({"--checkpoint", "60", "-q"})), 1, {"out.checkpoint.qfilm: ", ".qfilm)"});
+  expectError(quintet(command({"--resume", "-q"})), 1, {"out.checkpoint.qfilm: ", ".qfilm)", "--force"});
+  expectError(quintet(command({"--checkpoint", "60", "-q"})), 1, {"out.checkpoint.qfilm: ", ".qfilm)", "--force"});
   EXPECT_EQ(quintet(command({"--resume", "--force", "-q"})).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / kFile));
 }

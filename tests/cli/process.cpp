@@ -181,6 +181,11 @@ bool LiveRun::waitForNext(const std::string& text) {
 
 void LiveRun::signal(int number) { ::kill(process_, number); }
 
+void LiveRun::kill() {
+  ::kill(process_, SIGKILL);
+  waitStatus(std::exchange(process_, -1));
+}
+
 RunResult LiveRun::finish() {
   while (readSome()) {
   }

@@ -39,6 +39,8 @@ class LiveRun {
   // The same, in the output after the last match of this function.
   bool waitForNext(const std::string& text);
   void signal(int number);
+  pid_t id() const { return process_; }
+  void kill();         // and waits for the process alone, as a shell does: processes that it started may still run
   RunResult finish();  // waits for the end as waitFor() does, else kills the process; `err` is all that was read
 
  protected:

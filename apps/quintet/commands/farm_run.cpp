@@ -103,7 +103,9 @@ int renderPart(const farm::Plan& plan, std::size_t part, const FarmRunOptions& r
   }
   if (!check.problem.empty() && check.state != farm::PartState::missing && !run.console.quiet)
     printMessage(fmt::format("{}; rendering it again", check.problem));
-  farm::waitUntilFree(plan, part, kLockSeconds);
+  farm::waitUntilFree(plan, part, kLockSeconds, [&](const std::string& text) {
+    if (!run.console.quiet) printMessage(text);
+  });
   farm::recordFailure(plan, part, {farm::machineName(), "", 0});  // what remains if the process is killed
   std::error_code failed;
   std::filesystem::current_path(plan.workingFolder, failed);

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -67,6 +69,32 @@ TEST(FileLockTest, EndsWithTheProcess) {
   EXPECT_EQ(folder.entryCount(), 1u);
   EXPECT_EQ(errorFor(folder / "a"), "");
   EXPECT_EQ(folder.entryCount(), 0u);
+}
+
+// A process that was killed takes a moment to end.
+TEST(FileLockTest, WaitsForTheOwner) {
+  const TempFolder folder;
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t owner = fork();
+  if (owner == 0) {
+    const FileLock lock(folder / "a");
+    if (::write(ready[1], "x", 1) == 1) ::usleep(300'000);
+    _exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  std::vector<std::string> notes;
+  const auto note = [&](const std::string& text) { notes.push_back(text); };
+  EXPECT_THROW(FileLock(folder / "a", 0.1, note), FileError);
+  EXPECT_EQ(notes.size(), 1u);
+  const FileLock lock(folder / "a", 20, note);
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_THAT(notes[1], testing::AllOf(HasSubstr("a: is in use by process " + std::to_string(owner)),
+                                       HasSubstr("waiting up to 20 s")));
+  ASSERT_EQ(waitpid(owner, nullptr, 0), owner);
+  ::close(ready[0]);
+  ::close(ready[1]);
 }
 
 }  // namespace

@@ -22,9 +22,10 @@ class CheckpointLoad : public testing::Test {
   }
   std::optional<StoredFilm> load(CheckpointRequest request, const StartPoint& start = {}, std::uint64_t samples = 16) {
     request.file = file_;
+    request.waitSeconds = 0;
     RenderLimits limits;
     limits.samples = samples;
-    return Checkpoint(request).load(provenance_, test::makeFilm(provenance_, {}), start, limits, observer_);
+    return Checkpoint(request, observer_).load(provenance_, test::makeFilm(provenance_, {}), start, limits, observer_);
   }
   std::string errorFor(const CheckpointRequest& request, const StartPoint& start = {}, std::uint64_t samples = 16) {
     try {
@@ -98,6 +99,29 @@ TEST_F(CheckpointLoad, RejectsDifferentArrays) {
   film.film.planes[0].name = "other";
   render::writeFilm(file_, film);
   EXPECT_THAT(errorFor({.resume = true}), HasSubstr("outputs"));
+  EXPECT_EQ(remedy_, Remedy::startOver);
+}
+
+// Whatever makes a checkpoint unusable, the error says how to start over, and --force does it.
+TEST_F(CheckpointLoad, NamesTheRemedyForDamagedFiles) {
+  write(provenance_, {{0, 8}});
+  const std::vector<std::byte> whole = readFile(file_);
+  const auto truncated = [&](std::size_t size) {
+    return std::vector(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+  };
+  std::vector<std::byte> flipped = whole;
+  flipped[whole.size() / 2] ^= std::byte{1};
+  for (const std::vector<std::byte>& bytes :
+       {truncated(0), truncated(3), truncated(100), truncated(whole.size() - 1), flipped}) {
+    writeFile(file_, std::span(bytes));
+    EXPECT_THAT(errorFor({.resume = true}), HasSubstr("scene.qfilm: ")) << bytes.size();
+    EXPECT_EQ(remedy_, Remedy::startOver) << bytes.size();
+    EXPECT_FALSE(load({.resume = true, .force = true})) << bytes.size();
+    EXPECT_THAT(observer_.notes.back(), HasSubstr("; starting over")) << bytes.size();
+  }
+  write(provenance_, {{4, 8}});
+  EXPECT_THAT(errorFor({.resume = true}), HasSubstr("starts at sample 0"));
+  EXPECT_EQ(remedy_, Remedy::startOver);
 }
 
 RenderResult resultOf(const Provenance& p, std::vector<render::SampleRange> ranges) {
@@ -111,7 +135,7 @@ RenderResult resultOf(const Provenance& p, std::vector<render::SampleRange> rang
 TEST_F(CheckpointLoad, SavesAndRemoves) {
   const RenderResult result = resultOf(provenance_, {{0, 12}});
   {
-    Checkpoint checkpoint({.file = file_, .seconds = 0});
+    Checkpoint checkpoint({.file = file_, .seconds = 0}, observer_);
     EXPECT_TRUE(checkpoint.isDue());
     checkpoint.save(result, observer_);
     EXPECT_EQ(checkpoint.savedSamples(), 12u);
@@ -120,13 +144,13 @@ TEST_F(CheckpointLoad, SavesAndRemoves) {
   const auto film = load({.resume = true});
   ASSERT_TRUE(film);
   EXPECT_TRUE(test::equalSums(film->file.film.planes[0].sums, result.film->plane(0).sums));
-  Checkpoint({.file = file_}).remove(observer_);
+  Checkpoint({.file = file_}, observer_).remove(observer_);
   EXPECT_EQ(folder_.entryCount(), 0u);
   EXPECT_TRUE(observer_.warnings.empty());
 }
 
 TEST_F(CheckpointLoad, BelongsToOneProcessAtATime) {
-  Checkpoint checkpoint({.file = file_, .seconds = 0});
+  Checkpoint checkpoint({.file = file_, .seconds = 0}, observer_);
   EXPECT_THAT(errorFor({.resume = true}), HasSubstr("scene.qfilm: is in use by process "));
   checkpoint.save(resultOf(provenance_, {{0, 8}}), observer_);  // replaces the file
   EXPECT_THAT(errorFor({.resume = true, .force = true}), HasSubstr("is in use"));
@@ -138,7 +162,7 @@ TEST_F(CheckpointLoad, AFailureToSaveIsOneWarning) {
       throw FileError(file, "no space left on device");
     }
   } observer;
-  Checkpoint checkpoint({.file = file_});
+  Checkpoint checkpoint({.file = file_}, observer);
   checkpoint.save(resultOf(provenance_, {{0, 4}}), observer);
   checkpoint.save(resultOf(provenance_, {{0, 8}}), observer);
   ASSERT_EQ(observer.warnings.size(), 1u);
@@ -148,13 +172,13 @@ TEST_F(CheckpointLoad, AFailureToSaveIsOneWarning) {
 
 TEST_F(CheckpointLoad, StaysIfTheRenderIsIncomplete) {
   RenderResult result = resultOf(provenance_, {{0, 4}});
-  EXPECT_FALSE(Checkpoint({.file = file_}).mustStay(result));
-  EXPECT_TRUE(Checkpoint({.file = file_, .keep = true}).mustStay(result));
+  EXPECT_FALSE(Checkpoint({.file = file_}, observer_).mustStay(result));
+  EXPECT_TRUE(Checkpoint({.file = file_, .keep = true}, observer_).mustStay(result));
   result.interrupted = true;
-  EXPECT_TRUE(Checkpoint({.file = file_}).mustStay(result));
+  EXPECT_TRUE(Checkpoint({.file = file_}, observer_).mustStay(result));
   result.interrupted = false;
   result.targetMissed = true;
-  EXPECT_TRUE(Checkpoint({.file = file_}).mustStay(result));
+  EXPECT_TRUE(Checkpoint({.file = file_}, observer_).mustStay(result));
 }
 
 TEST_F(CheckpointLoad, ResumePoint) {
