@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <map>
 #include <span>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -67,17 +69,29 @@ void requireOneLine(const std::string& text) {
     throw UsageError(fmt::format("'{}' has a line break, which an option of sbatch cannot have", printable(text)));
 }
 
-std::vector<std::string> ifSet(const std::string& text) {
-  requireOneLine(text);
-  return text.empty() ? std::vector<std::string>{} : std::vector{text};
+// For a line "#SBATCH OPTION": sbatch splits it at spaces, and knows quotes, comments and backslashes.
+std::string sbatchQuoted(const std::string& option) {
+  requireOneLine(option);
+  std::string quoted;
+  for (const char c : option) {
+    if (std::string_view(" \t\"'#\\").find(c) != std::string_view::npos) quoted += '\\';
+    quoted += c;
+  }
+  return quoted;
 }
 
+std::vector<std::string> ifSet(const std::string& text) {
+  return text.empty() ? std::vector<std::string>{} : std::vector{sbatchQuoted(text)};
+}
+
+// For bash.
 std::string quoted(const std::filesystem::path& path) { return shellQuoted(path.string()); }
 
 Placeholders placeholders(const Plan& plan, const ScriptOptions& options) {
   const auto number = [](std::size_t value) { return std::vector{fmt::format("{}", value)}; };
   const std::size_t tasks = taskCount(plan, options);
-  std::ranges::for_each(options.sbatch, requireOneLine);
+  std::vector<std::string> further;
+  std::ranges::transform(options.sbatch, std::back_inserter(further), sbatchQuoted);
   return {{"PROGRAM", {quoted(options.program)}},
           {"PLAN", {quoted(plan.folder / kPlanFile)}},
           {"PARALLEL", {quoted(plan.folder / "parallel.sh")}},
@@ -90,7 +104,7 @@ Placeholders placeholders(const Plan& plan, const ScriptOptions& options) {
           {"PARTITION", ifSet(options.partition)},
           {"TIME", ifSet(options.time)},
           {"MEMORY", ifSet(options.memory)},
-          {"OPTION", options.sbatch}};
+          {"OPTION", std::move(further)}};
 }
 
 }  // namespace

@@ -12,10 +12,11 @@ if [[ ${1-} == --part ]]; then  # on one of the machines
   run_part "$2"
   exit
 fi
-cd "$(dirname "$0")" || exit 1
+CDPATH='' cd -- "$(dirname -- "$0")" || exit 1
 if ! command -v parallel > /dev/null; then
   echo "parallel.sh: GNU parallel was not found" >&2
   exit 1
 fi
-seq 0 @LAST_PART@ | parallel --retries 3 --joblog logs/parallel.log "$@" @PARALLEL@ --part '{}'
+# As an argument, the path of this script is quoted for the shells of the machines.
+seq 0 @LAST_PART@ | parallel --retries 3 --joblog logs/parallel.log "$@" bash '{1}' --part '{2}' ::: @PARALLEL@ :::: -
 exec "$quintet" farm merge "$plan"

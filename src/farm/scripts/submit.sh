@@ -5,7 +5,7 @@
 # Parts that are done are skipped, so that this can be repeated after a failure. The merge job starts when the array has
 # ended, whatever happened to its tasks, because it reports the parts that are not usable.
 set -euo pipefail
-cd "$(dirname "$0")"
+CDPATH='' cd -- "$(dirname -- "$0")"
 if ! command -v sbatch > /dev/null; then
   echo "submit.sh: sbatch was not found: run this where Slurm is installed, or use parallel.sh" >&2
   exit 1

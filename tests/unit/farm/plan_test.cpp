@@ -5,10 +5,17 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parse.h"
+#include "base/text.h"
 #include "farm/plans.h"
 #include "farm/scripts.h"
 #include "job/version.h"
@@ -190,6 +197,66 @@ TEST_F(FarmPlan, ScriptsStayWithinTheLargestArray) {
   EXPECT_THAT(scriptOf(plan_, options, "parallel.sh"), HasSubstr("seq 0 99999"));
   EXPECT_THAT(messageOf([&] { scripts(plan_, {.program = "q", .sbatch = {"--a\n#SBATCH --b"}}); }),
               HasSubstr("line break"));
+}
+
+// Runs the script of the plan in bash, where `programs` has these programs besides those of the system.
+int runScript(const Plan& plan, const std::string& name, const std::string& arguments,
+              const std::filesystem::path& programs) {
+  const std::string command =
+      fmt::format("PATH={}:$PATH bash {} {} > {} 2>&1", shellQuoted(programs.string()),
+                  shellQuoted((plan.folder / name).string()), arguments, shellQuoted((programs / "output").string()));
+  return std::system(command.c_str());
+}
+
+// The scripts of a plan whose program and folder have names that shells, sbatch and GNU parallel could change.
+class FarmScripts : public testing::Test {
+ protected:
+  FarmScripts() {
+    std::filesystem::create_directories(bin_);
+    options_.program = bin_ / "the quintet's";
+    program("the quintet's", "printf '%s|' \"$@\" >> \"$(dirname \"$0\")/calls\"; echo >> \"$(dirname \"$0\")/calls\"");
+    writePlan(plan_, options_, false);
+  }
+  void program(const std::string& name, const std::string& text) const {
+    writeFile(bin_ / name, "#!/usr/bin/env bash\n" + text + "\n");
+    std::filesystem::permissions(bin_ / name, std::filesystem::perms(0755));
+  }
+  // Sorted, because parts run at the same time.
+  std::vector<std::string> calls() const {
+    std::vector<std::string> lines = splitText(readTextFile(bin_ / "calls"), '\n');
+    lines.pop_back();
+    std::ranges::sort(lines);
+    return lines;
+  }
+  std::vector<std::string> expectedCalls() const {
+    const std::string file = (plan_.folder / kPlanFile).string();
+    return {"farm|merge|" + file + "|", "farm|run|--quiet|" + file + "|0|", "farm|run|--quiet|" + file + "|1|"};
+  }
+
+  const quintet::test::TempFolder folder_;
+  const std::filesystem::path bin_ = folder_ / "bin";
+  const Plan plan_ = test::makePlan(folder_ / "it's a \"farm\" {1} $HOME `x` \\ & ü", 2);
+  ScriptOptions options_;
+};
+
+TEST_F(FarmScripts, OfSlurmWorkInFoldersWithAnyName) {
+  // Runs the tasks of the array, and prints the options of the script as sbatch reads them.
+  program("sbatch", R"(shift $(($# - 1))
+grep '^#SBATCH' "$1" | sed 's/^#SBATCH //' | xargs -n 1 printf '<%s>\n' > "options.$1"
+if [[ $1 == render.sbatch ]]; then SLURM_ARRAY_TASK_ID=0 bash "$1"; SLURM_ARRAY_TASK_ID=1 bash "$1"; else bash "$1"; fi
+echo 7)");
+  options_.sbatch = {"--comment=it's \"one\" # of \\ two", "--gres=gpu:1"};
+  writePlan(plan_, options_, false);
+  ASSERT_EQ(runScript(plan_, "submit.sh", "", bin_), 0) << readTextFile(bin_ / "output");
+  EXPECT_EQ(calls(), expectedCalls());
+  EXPECT_THAT(readTextFile(plan_.folder / "options.render.sbatch"),
+              testing::AllOf(HasSubstr("<--comment=it's \"one\" # of \\ two>\n"), HasSubstr("<--gres=gpu:1>\n")));
+}
+
+TEST_F(FarmScripts, OfGnuParallelWorkInFoldersWithAnyName) {
+  if (std::system("command -v parallel > /dev/null") != 0) GTEST_SKIP() << "GNU parallel is not installed";
+  ASSERT_EQ(runScript(plan_, "parallel.sh", "--jobs 2", bin_), 0) << readTextFile(bin_ / "output");
+  EXPECT_EQ(calls(), expectedCalls());
 }
 
 }  // namespace
