@@ -20,15 +20,17 @@ class DeviceLostError : public Error {
   using Error::Error;
 };
 
-// A launch did not end in time: 60 s, or 600 s on a CPU. The device still works on it and cannot be stopped, so the
+// A launch did not end in time: 60 s, or 120 s on a CPU, without compilation. The device still works on it and cannot be stopped, so the
 // destructors of Renderer and Device can block, and so can exit(). Report the error, and end the process with _exit().
 class TimeoutError : public DeviceLostError {
  public:
-  explicit TimeoutError(double seconds);
-  double seconds() const { return seconds_; }  // the limit
+  explicit TimeoutError(double seconds, const std::string& work = {});
+  double seconds() const { return seconds_; }        // the limit
+  const std::string& work() const { return work_; }  // "launch 3 (128 pixels, 4 samples each)"; may be empty
 
  private:
   double seconds_;
+  std::string work_;
 };
 
 // A device of the machine, whether Quintet can use it or not.

@@ -7,8 +7,11 @@
 
 namespace quintet {
 
-TimeoutError::TimeoutError(double seconds)
-    : DeviceLostError(fmt::format("the device did not finish within {:g} s", seconds)), seconds_(seconds) {}
+TimeoutError::TimeoutError(double seconds, const std::string& work)
+    : DeviceLostError(
+          fmt::format("the device did not finish {}{}within {:g} s", work, work.empty() ? "" : " ", seconds)),
+      seconds_(seconds),
+      work_(work) {}
 
 namespace gpu {
 namespace {

@@ -16,7 +16,6 @@ namespace {
 
 constexpr uvec2 kSize{96, 64};
 constexpr std::uint64_t kFrames = 2;
-constexpr double kTimeout = 20.0;  // seconds
 
 render::RenderSettings settingsFor(const program::Program& program, const scene::Scene& scene,
                                    const RenderRequest& request) {
@@ -33,7 +32,7 @@ render::RenderSettings settingsFor(const program::Program& program, const scene:
   settings.maxMemory = request.load.maxMemory;
   settings.outputs = request.outputs;
   settings.instrument = true;
-  settings.timeoutSeconds = request.launchTimeout > 0 ? request.launchTimeout : kTimeout;
+  settings.timeoutSeconds = request.launchTimeout;
   return settings;
 }
 
@@ -62,7 +61,7 @@ std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& 
     renderSamples(renderer, request.limits.samples.value_or(accumulates ? kFrames : render::kBatchSamples));
     return renderer.runtimeDiagnostics();
   } catch (const TimeoutError& error) {
-    hung(hangDiagnostic(program, error.seconds()));
+    hung(hangDiagnostic(program, error));
     throw;
   }
 }

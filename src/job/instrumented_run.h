@@ -16,7 +16,7 @@ namespace quintet::job {
 
 // Renders with the view, size, region, seed, parameters and number of samples (or frames) of the request, and returns
 // what the checks found (docs/diagnostics, Q001 to Q007). The defaults are 96x64 pixels, and one batch or two frames.
-// `hung` is called as Observer::deviceHung() if a launch does not end within 20 s, or the request's timeout. Throws
+// `hung` is called as Observer::deviceHung() if a launch does not end in time. Throws
 // UsageError, FileError, ProgramError and gpu errors.
 std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& program, scene::Scene scene,
                                         const RenderRequest& request,

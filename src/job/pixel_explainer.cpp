@@ -127,7 +127,7 @@ PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Obse
     if (!own_) job_.flushPrints(observer);
     return result;
   } catch (const TimeoutError& error) {
-    observer.deviceHung(hangDiagnostic(job_.resolved().program, error.seconds()));
+    observer.deviceHung(hangDiagnostic(job_.resolved().program, error));
     throw;
   }
 }

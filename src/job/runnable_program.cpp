@@ -86,13 +86,16 @@ CheckedProgram compileAndCheck(const program::Program& program, const shader::Co
   return checked;
 }
 
-Diagnostic hangDiagnostic(const program::Program& program, double seconds) {
-  return {Severity::error,
-          program.path(program.rayGeneration),
-          0,
-          0,
-          "HANG",
-          fmt::format("a launch did not end within {:g} s, possibly because of an infinite loop in a shader", seconds)};
+Diagnostic hangDiagnostic(const program::Program& program, const TimeoutError& error) {
+  return {
+      Severity::error,
+      program.path(program.rayGeneration),
+      0,
+      0,
+      "HANG",
+      fmt::format("{} did not end within {:g} s, without the time of compilation; possibly because of an infinite loop "
+                  "in a shader",
+                  error.work().empty() ? "a launch" : error.work(), error.seconds())};
 }
 
 }  // namespace quintet::job

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include <quintet/device.h>
+
 #include "base/diagnostic.h"
 #include "check/device_limits.h"
 #include "gpu/device_info.h"
@@ -49,7 +51,7 @@ CheckedProgram compileAndCheck(const program::Program& program, const shader::Co
                                program::Instrumentation instrumentation = program::Instrumentation::none);
 
 // Returns what Observer::deviceHung() reports when a launch of the program did not end within `seconds`.
-Diagnostic hangDiagnostic(const program::Program& program, double seconds);
+Diagnostic hangDiagnostic(const program::Program& program, const TimeoutError& error);
 
 }  // namespace quintet::job
 #endif

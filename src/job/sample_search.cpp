@@ -147,7 +147,7 @@ class Search {
       }
       return renderer.film().downloadBatch(0);
     } catch (const TimeoutError& error) {
-      observer_.deviceHung(hangDiagnostic(job_.resolved().program, error.seconds()));
+      observer_.deviceHung(hangDiagnostic(job_.resolved().program, error));
       throw;
     }
   }

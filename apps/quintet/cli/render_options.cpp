@@ -280,16 +280,16 @@ void declareProgram(OptionTable& table, RenderOptions& options) {
                          .target = &options.output.allOutputs}});
 }
 
-void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   table.add("Run", {{.names = "--device",
                      .value = "NAME",
                      .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
                      .target = &options.device,
                      .candidates = {.names = deviceNames()}},
-                    {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
+                    {.names = "--timeout", .value = "SECONDS", .help = kLaunchLimitHelp, .target = &texts.timeout}});
 }
 
-void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   table.add("Run",
             {{.names = "--device",
               .value = "NAMES",
@@ -301,11 +301,11 @@ void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& optio
              {.names = "--mixed-devices",
               .help = "Allow different kinds of devices in --device, which can differ in the last bit of a sample",
               .target = &options.mixedDevices},
-             {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
+             {.names = "--timeout", .value = "SECONDS", .help = kLaunchLimitHelp, .target = &texts.timeout}});
 }
 
-void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
-  declareDevices(table, texts, options, timeoutHelp);
+void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  declareDevices(table, texts, options);
   table.add(
       "Run",
       {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},

@@ -77,13 +77,13 @@ void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options)
 void declareProgramName(OptionTable& table, RenderOptions& options);
 void declareParameters(OptionTable& table, RenderOptions& options);  // of the program
 void declareProgram(OptionTable& table, RenderOptions& options);     // parameters and outputs
-inline constexpr const char* kLaunchLimitHelp = "Time limit of one launch (default: 60; on a CPU 600)";
-void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options,
-                   const std::string& timeoutHelp = kLaunchLimitHelp);
+inline constexpr const char* kLaunchLimitHelp =
+    "Time limit of one launch, without compilation (default: 60; on a CPU 120)";
+void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // Device, messages and preview.
-void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // The part of declareProcess() that decides which devices render: also a list of them.
-void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // What `render` and `run` share: what an image looks like, without the program.
 void declareImageOptions(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // What an image of a scene looks like: every option of `render` but its files, devices, messages and checkpoints.

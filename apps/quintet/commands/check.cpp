@@ -112,7 +112,7 @@ OptionTable declareCheck(CheckOptions& options) {
         .target = &options.samples},
        {.names = "--timeout",
         .value = "SECONDS",
-        .help = "Time limit of one launch of --instrument (default: 20)",
+        .help = fmt::format("{}; of --instrument", kLaunchLimitHelp),
         .target = &options.timeout},
        {.names = "--set",
         .value = "NAME=VALUE",

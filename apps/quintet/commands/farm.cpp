@@ -19,7 +19,7 @@ Option planArgument(std::filesystem::path& plan) {
 
 void declarePlanned(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   declareRendering(table, texts, options);
-  declareDevices(table, texts, options, kLaunchLimitHelp);
+  declareDevices(table, texts, options);
   table.add("Long renders", {{.names = "--checkpoint",
                               .value = "SECONDS",
                               .help = "Write a checkpoint of a part every N seconds, 0: after each batch (default: 60)",

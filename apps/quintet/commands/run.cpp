@@ -33,8 +33,6 @@
 namespace quintet::cli {
 namespace {
 
-constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
-
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
   bool watch = false;
@@ -83,7 +81,7 @@ OptionTable declareRun(RunOptions& options, RenderTexts& texts) {
       "Run",
       {{.names = "--watch", .help = "Keep running: render again whenever a file is saved", .target = &options.watch}});
   declarePrint(table, texts);
-  declareProcess(table, texts, options, "Time limit of one launch (default: 30)");
+  declareProcess(table, texts, options);
   table.add("Run", {{.names = "--json",
                      .help = "Print JSON on standard output at the end (or with --help, --list)",
                      .target = &options.console.json}});
@@ -123,7 +121,6 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
         fmt::format("{}: run writes images; use 'quintet render' for films", options.output.file.string()));
   convert(texts, options);
   convertFrameCount(texts, options);
-  if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardStreams(options);
   if (options.watch && options.video) throw UsageError("--watch writes images; a video requires a run of its own");
   if (options.watch && output::isStandardOutput(options.output.file))
@@ -214,7 +211,7 @@ class Watch {
     if (result.abandoned) return;
     console_.finalImage(*result.film);
     interrupted_ = result.interrupted;
-    if (!options_.output.everyFrame) write(result);
+    if (!live_.job()->resolved().request.frames.every) write(result);
     addWarnings(result, console_);
     console_.clear();
     if (options_.console.json) writeFile("-", output::resultJson(result, files_, clock_.seconds()));

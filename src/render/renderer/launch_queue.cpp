@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <cassert>
 
+#include <quintet/device.h>
+
+#include <fmt/format.h>
+
+#include "base/plural.h"
 #include "render/film/film_state.h"
 
 namespace quintet::render {
@@ -31,6 +36,12 @@ bool LaunchQueue::isShort(double pixelSamples) const {
   return pixelSamples <= 2.0 * launchSeconds_ * pixelSamplesPerSecond_;
 }
 
+void LaunchQueue::compile(const Record& trace) {
+  const Stopwatch clock;
+  context_.wait(context_.submit(trace));
+  compileSeconds_ = clock.seconds();
+}
+
 void LaunchQueue::submit(const Launch& launch) {
   while (inFlight_.size() >= maxInFlight_) finishOldest();
   gpu::Timer& timer = timers_[count_++ % kMaxLaunchesInFlight];
@@ -45,8 +56,8 @@ void LaunchQueue::submit(const Launch& launch) {
     if (launch.after) launch.after(commands);
     timer.mark(commands, 3);
   });
-  inFlight_.push_back({value, sinceRecording, &timer, launch.rows, launch.samples, launch.pixelSamples});
-  // The first launch measures the rate for the others; on a CPU it also compiles.
+  inFlight_.push_back({value, sinceRecording, &timer, count_, launch.rows, launch.samples, launch.pixelSamples});
+  // The first launch measures the rate for the others.
   if (maxInFlight_ == 1 || statistics_.firstLaunchSeconds == 0) finish();
 }
 
@@ -57,9 +68,16 @@ void LaunchQueue::finish() {
 void LaunchQueue::finishOldest() {
   const InFlight launch = inFlight_.front();
   inFlight_.pop_front();
-  context_.wait(launch.value, timeoutSeconds_);
+  try {
+    context_.wait(launch.value, timeoutSeconds_);
+  } catch (const TimeoutError& error) {
+    const double pixels = launch.pixelSamples / launch.samples;
+    throw TimeoutError(error.seconds(), fmt::format("launch {} ({}, {} each)", launch.number,
+                                                    counted(static_cast<std::uint64_t>(pixels), "pixel"),
+                                                    counted(launch.samples, "sample")));
+  }
   const double wall = launch.sinceRecording.seconds();
-  if (statistics_.firstLaunchSeconds == 0) statistics_.firstLaunchSeconds = wall;
+  if (statistics_.firstLaunchSeconds == 0) statistics_.firstLaunchSeconds = compileSeconds_ + wall;
   const double device = launch.timer->seconds(1, 2);
   if (profile_) recordTiming(launch, wall);
   statistics_.deviceSeconds += device;

@@ -19,7 +19,7 @@ namespace quintet::render {
 struct RenderStatistics {
   double compileSeconds = 0;      // GLSL to SPIR-V
   double pipelineSeconds = 0;     // SPIR-V to pipeline
-  double firstLaunchSeconds = 0;  // wall clock of the first launch, including compilation by the driver
+  double firstLaunchSeconds = 0;  // wall clock of the first launch, and of the driver's compilation before it
   double renderSeconds = 0;       // wall clock of all batches
   double deviceSeconds = 0;       // device time of all finished launches
   std::uint64_t samples = 0;      // per pixel; number of frames for a program that accumulates
@@ -50,6 +50,10 @@ class LaunchQueue {
   bool isShort(double pixelSamples) const;
 
   using Record = std::function<void(gpu::Commands&)>;
+  // Before the first launch, on devices whose drivers compile in it: a trace without rays. The limit of launches does not
+  // apply, because the time depends on the driver and on other processes, not on what the shaders do.
+  void compile(const Record& trace);
+
   struct Launch {
     std::uint32_t rows = 0;
     std::uint32_t samples = 0;  // per pixel
@@ -71,6 +75,7 @@ class LaunchQueue {
     std::uint64_t value = 0;  // of the timeline semaphore
     Stopwatch sinceRecording;
     gpu::Timer* timer = nullptr;
+    std::uint64_t number = 0;  // from 1
     std::uint32_t rows = 0;
     std::uint32_t samples = 0;
     double pixelSamples = 0;
@@ -90,6 +95,7 @@ class LaunchQueue {
   std::vector<LaunchTiming> timings_;
   double lastStamp_ = 0;              // device time at which the previous launch ended
   double pixelSamplesPerSecond_ = 0;  // measured; 0 while unknown
+  double compileSeconds_ = 0;         // of compile()
 };
 
 }  // namespace quintet::render

@@ -33,7 +33,7 @@ Region validRegion(const RenderSettings& settings) {
 RenderSettings decideSettings(RenderSettings settings, const program::Program& program, bool softwareDevice) {
   const bool accumulates = program.accumulation == program::Accumulation::program;
   settings.region = validRegion(settings);
-  if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = softwareDevice ? 600 : 60;
+  if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = softwareDevice ? kCpuLaunchTimeout : kLaunchTimeout;
   if (settings.launchesInFlight == 0) settings.launchesInFlight = softwareDevice ? 1 : kMaxLaunchesInFlight;
   settings.launchesInFlight = accumulates ? 1 : std::min(settings.launchesInFlight, kMaxLaunchesInFlight);
   if (settings.parameters.parameters().empty()) settings.parameters = program::ParameterValues(program.parameters);

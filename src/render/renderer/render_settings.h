@@ -29,6 +29,10 @@ inline constexpr std::string_view kMotionOutput = "motion";
 // Largest value of RenderSettings::launchesInFlight.
 inline constexpr std::uint32_t kMaxLaunchesInFlight = 2;
 
+// Seconds that a launch may take. Launches are made to take RenderSettings::launchSeconds, so one that takes this long
+// probably never ends. A CPU also works for other processes.
+inline constexpr double kLaunchTimeout = 60, kCpuLaunchTimeout = 120;
+
 struct RenderSettings {
   std::uint32_t width = 1280;  // size of the whole image in pixels
   std::uint32_t height = 720;
@@ -61,8 +65,8 @@ struct RenderSettings {
   std::uint32_t frameCount = 0;
   bool instrument = false;  // the program is compiled with runtime checks, which are slow: Renderer::runtimeDiagnostics
   double launchSeconds = 0.25;  // approximate duration of a launch; launches are divided accordingly
-  // A launch that takes longer throws TimeoutError. 0 means the default: 60, or 600 on a CPU, whose first launch
-  // compiles.
+  // A launch that takes longer throws TimeoutError; the driver's compilation does not count. 0 means the default:
+  // kLaunchTimeout, or kCpuLaunchTimeout on a CPU.
   double timeoutSeconds = 0;
   // Launches that can wait on the device, so that it is never idle between them. 0 means the default: 2, or 1 on a CPU.
   // It is always 1 for programs that accumulate. The image does not depend on it.

@@ -146,6 +146,8 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
       done += constants.sampleCount;
     }
   };
+  if (context_.info().software && !std::exchange(compiled_, true))
+    queue_.compile([&](gpu::Commands& commands) { rt::traceNothing(commands, linked_.pipeline(), table_); });
   queue_.submit({rows, count, static_cast<double>(target.width) * rows * count, before, trace, after});
 }
 

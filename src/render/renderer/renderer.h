@@ -184,6 +184,7 @@ class Renderer {
   // Mutable so that const functions can wait for launches, which changes no result.
   mutable RenderStatistics statistics_;
   mutable LaunchQueue queue_;
+  bool compiled_ = false;  // by the driver, as far as it compiles in launches
   std::uint64_t nextBatch_ = 0;
 };
 
