@@ -142,6 +142,12 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
 
 Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
   Defines defines = features.defines;
+  // A driver that traverses on the CPU compiles there, too: 10 to 60 s for a variant of the path tracer. Its disk cache helps
+  // only scenes with the same variant. What the code for textures and vertex colors costs was not measurable.
+  if (quirks.slowInstances)
+    std::erase_if(defines, [](const auto& define) {
+      return define.first == "QUINTET_TEXTURE_SLOTS" || define.first == "QUINTET_NO_VERTEX_COLORS";
+    });
   if (quirks.slowInstances) defines.emplace_back("QUINTET_MERGED_INSTANCES", "1");
   if (quirks.slowTraceCalls && !features.boxes && !features.panes) defines.emplace_back(program::kInlineTraces, "1");
   if (!quirks.corruptsHitAttributes) return defines;

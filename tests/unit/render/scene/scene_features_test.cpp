@@ -50,6 +50,26 @@ TEST(SceneFeatures, AreKnownBeforeImagesAreDecoded) {
   }
 }
 
+// On a CPU, scenes share variants of the shaders, which take long to compile.
+TEST(SceneFeatures, OfTexturesAndColorsMatterOnGpusOnly) {
+  scene::Scene plain, textured;
+  for (scene::Scene* scene : {&plain, &textured}) {
+    scene->materials.emplace_back();
+    scene->meshes.emplace_back().geometries.emplace_back();
+  }
+  textured.meshes[0].geometries[0].colors.resize(3);
+  textured.materials[0].baseColorTexture.texture = 0;
+  const auto defines = [](const scene::Scene& scene, const gpu::Quirks& quirks) {
+    return render::shaderDefines(render::sceneFeatures(scene, {}), quirks);
+  };
+  gpu::Quirks cpu;
+  cpu.slowInstances = true;
+  EXPECT_NE(defines(plain, {}), defines(textured, {}));
+  EXPECT_EQ(defines(plain, cpu), defines(textured, cpu));
+  textured.materials[0].clearcoat = 1;
+  EXPECT_NE(defines(plain, cpu), defines(textured, cpu));
+}
+
 // The tree can only be left out if the table of lights, which the tree holds, has at most one.
 TEST(SceneFeatures, HaveALightTreeForSeveralLights) {
   scene::Environment sky;
