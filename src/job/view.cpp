@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/memory_budget.h"
@@ -30,21 +33,39 @@ std::string describe(const scene::Scene& scene, std::size_t index) {
   return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera {} '{}'", index, name);
 }
 
-// By name, else by index.
+constexpr std::size_t kListedCameras = 20;
+
+// "0 'Main', 1 'Side' (node 'Camera.001'), 2"
+std::string listOfCameras(const scene::Scene& scene) {
+  std::vector<std::string> entries;
+  for (std::size_t i = 0; i < std::min(scene.cameras.size(), kListedCameras); ++i) {
+    const auto& [name, nodeName] = std::tie(scene.cameras[i].name, scene.cameras[i].nodeName);
+    entries.push_back(fmt::format("{}{}{}", i, name.empty() ? "" : fmt::format(" '{}'", name),
+                                  nodeName.empty() || nodeName == name ? "" : fmt::format(" (node '{}')", nodeName)));
+  }
+  if (scene.cameras.size() > kListedCameras)
+    entries.push_back(fmt::format("and {} more", scene.cameras.size() - kListedCameras));
+  return printable(fmt::format("{}", fmt::join(entries, ", ")));
+}
+
+// By the name of the camera, else of its node, else by index.
 std::size_t findCamera(const scene::Scene& scene, const std::string& wanted) {
   std::vector<std::string> names;
-  for (const scene::Camera& camera : scene.cameras) names.push_back(camera.name);
-  if (const auto found = std::ranges::find(names, wanted); found != names.end())
-    return static_cast<std::size_t>(found - names.begin());
+  for (const auto name : {&scene::Camera::name, &scene::Camera::nodeName}) {
+    if (const auto found = std::ranges::find(scene.cameras, wanted, name); found != scene.cameras.end())
+      return static_cast<std::size_t>(found - scene.cameras.begin());
+    std::ranges::transform(scene.cameras, std::back_inserter(names), name);
+  }
+  std::erase(names, "");
   std::size_t index = 0;
   const char* end = wanted.data() + wanted.size();
   const auto [stop, error] = std::from_chars(wanted.data(), end, index);
   const bool isIndex = error == std::errc{} && stop == end;
-  if (isIndex && index < names.size()) return index;
-  if (names.empty()) throw UsageError(fmt::format("camera '{}' not found: {} has no cameras", wanted, scene.name));
+  if (isIndex && index < scene.cameras.size()) return index;
+  if (scene.cameras.empty())
+    throw UsageError(fmt::format("camera '{}' not found: {} has no cameras", wanted, scene.name));
   throw UsageError(fmt::format("camera '{}' not found in {}{}; available: {}", wanted, scene.name,
-                               isIndex ? "" : suggestion(wanted, names),
-                               names.size() == 1 ? "0" : fmt::format("0–{}", names.size() - 1)));
+                               isIndex ? "" : suggestion(wanted, names), listOfCameras(scene)));
 }
 
 // Computing them takes a while for a large scene.

@@ -47,7 +47,11 @@ std::string describe(const scene::Camera& camera) {
                                              2 * camera.orthographicHalfSize.y)
                                : fmt::format("perspective, {:.4g}°", glm::degrees(camera.verticalFov));
   const std::string aspect = camera.aspect > 0 ? fmt::format(", aspect {:.4g}", camera.aspect) : "";
-  return fmt::format("'{}': {}{}, at {:.4g} {:.4g} {:.4g}", printable(camera.name), lens, aspect, eye.x, eye.y, eye.z);
+  const std::string node = camera.nodeName.empty() || camera.nodeName == camera.name
+                               ? ""
+                               : fmt::format(" (node '{}')", printable(camera.nodeName));
+  return fmt::format("'{}'{}: {}{}, at {:.4g} {:.4g} {:.4g}", printable(camera.name), node, lens, aspect, eye.x, eye.y,
+                     eye.z);
 }
 
 std::string describe(const scene::Light& light) {
@@ -144,6 +148,7 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
   if (kind == std::string_view("cameras"))
     for (const scene::Camera& camera : scene.cameras)
       list.push_back({{"name", camera.name},
+                      {"node", camera.nodeName.empty() ? Json() : Json(camera.nodeName)},
                       {"type", camera.orthographic ? "orthographic" : "perspective"},
                       {"verticalFov", camera.orthographic ? Json() : Json(glm::degrees(camera.verticalFov))},
                       {"aspect", camera.aspect},

@@ -170,6 +170,8 @@ int findScene(const Document& document, const std::string& nameOrIndex) {
   const char* end = nameOrIndex.data() + nameOrIndex.size();
   const auto [stop, error] = std::from_chars(nameOrIndex.data(), end, index);
   if (error == std::errc{} && stop == end && index < names.size()) return static_cast<int>(index);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i].empty()) names[i] = std::to_string(i);
   throw UsageError(printable(fmt::format("{}: no scene '{}'; the file has {}{}", document.file.string(), nameOrIndex,
                                          counted(names.size(), "scene"),
                                          names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", ")))));
@@ -214,6 +216,7 @@ Camera readCamera(const Document& document, int index, const tinygltf::Node& nod
   const std::string location = fmt::format("/cameras/{}/{}", index, from.type);
   Camera camera;
   camera.name = from.name.empty() ? node.name : from.name;
+  camera.nodeName = node.name;
   camera.worldFromCamera = rigidFrame(worldFromNode);
   if (from.type == "perspective") {
     camera.verticalFov = normalFloat(from.perspective.yfov);

@@ -181,6 +181,7 @@ struct Instance {
 
 struct Camera {
   std::string name;
+  std::string nodeName;  // of the glTF node that has the camera; empty if it has none
   bool orthographic = false;
   float verticalFov = glm::radians(45.0f);  // radians, perspective only
   float aspect = 0.0f;                      // width / height stated by the file; 0 means that of the image

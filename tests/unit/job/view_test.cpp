@@ -66,6 +66,37 @@ TEST(ChooseCamera, UsesTheFirstSpecified) {
   EXPECT_THROW(chooseCamera(scene, request, 0), UsageError);
 }
 
+// Exporters name the node after the camera that users see, and the camera after its data.
+TEST(ChooseCamera, UsesNamesOfNodes) {
+  scene::Scene scene = makeScene();
+  scene.cameras[0].nodeName = "Hero";
+  scene.cameras[1].nodeName = "a";  // a name of a camera comes first
+  scene.cameras.emplace_back().nodeName = "1";
+  const auto indexOf = [&](const char* name) {
+    CameraRequest request;
+    request.name = name;
+    const std::string text = chooseCamera(scene, request, 0).description;
+    return text.substr(0, 8);
+  };
+  EXPECT_EQ(indexOf("Hero"), "camera 0");
+  EXPECT_EQ(indexOf("a"), "camera 0");
+  EXPECT_EQ(indexOf("1"), "camera 2");  // a name comes before an index
+  EXPECT_EQ(indexOf("0"), "camera 0");
+  const auto errorFor = [&](const char* name) -> std::string {
+    try {
+      indexOf(name);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(errorFor("Herp"),
+            "camera 'Herp' not found in scene.glb (did you mean 'Hero'?); available: 0 'a' (node 'Hero'), 1 'b' (node "
+            "'a'), 2 (node '1')");
+  scene.cameras.resize(25);
+  EXPECT_TRUE(errorFor("x").ends_with(", 19, and 5 more")) << errorFor("x");
+}
+
 TEST(ChooseCamera, LooksFromAndAt) {
   const scene::Scene scene = makeScene();
   CameraRequest request;
