@@ -45,7 +45,7 @@ bool RenderJob::addToSequence(FrameSequence& sequence, std::uint32_t frame, Rend
                               Observer& observer) {
   const FrameRequest& frames = job_.request.frames;
   RenderResult& last = sequence.last = std::move(result);
-  sequence.seconds = last.provenance.seconds = last.seconds.render = seconds;
+  sequence.seconds = seconds;
   // The name of a single frame needs no number.
   if (scene_->onDevice->animated()) last.provenance.frame = frame;
   const bool isLast = frame == frames.lastFrame();
@@ -53,6 +53,7 @@ bool RenderJob::addToSequence(FrameSequence& sequence, std::uint32_t frame, Rend
   last.interrupted = last.provenance.interrupted = last.interrupted || stop;
   last.earlierTargetMissed = sequence.missed;
   if (frames.every) finishFrame(last, observer);
+  last.provenance.seconds = last.seconds.render = seconds;  // of the images, their own
   if (last.interrupted || isLast) return false;
   addFrame(sequence.earlier, last);
   // The caller sees only the last result, to which addFrame() adds what is not finite.

@@ -157,6 +157,7 @@ constexpr std::array kFields{
     onlyIfSet(field<&P::shutter>(Role::identity, "shutter", "shutter", "Shutter")),
     field<&P::outputs>(Role::identity, "outputs", "", ""),
     field<&P::frame>(Role::result, "", "frame", "Frame"),
+    onlyIfSet(field<&P::framesPerSecond>(Role::note, "frames per second", "framesPerSecond", "FramesPerSecond")),
     field<&P::rays>(Role::result, "", "rays", "Rays"),
     field<&P::droppedSamples>(Role::result, "", "droppedSamples", "DroppedSamples"),
     field<&P::firstDroppedSample>(Role::result, "", "firstDroppedSample", "FirstDroppedSample"),
@@ -244,6 +245,7 @@ Provenance fromFacts(const render::FilmFacts& identity, const render::FilmFacts&
   if (provenance.size.x == 0) throw UsageError("size is missing");
   if (region.width == 0) throw UsageError("region is missing");
   if (provenance.seconds < 0 || provenance.batchSeconds < 0) throw UsageError("seconds are negative");
+  if (!(provenance.framesPerSecond.value_or(1.0) > 0)) throw UsageError("frames per second are not positive");
   if (std::abs(provenance.exposure.value_or(0.0)) > kMaxExposure) throw UsageError("exposure is out of range");
   if (std::uint64_t{region.x} + region.width > provenance.size.x ||
       std::uint64_t{region.y} + region.height > provenance.size.y)

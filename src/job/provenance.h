@@ -53,13 +53,14 @@ struct Provenance {
 
   // Notes: everything else that a film keeps for the images that are made of it.
   std::string commandLine;
-  std::string scene;        // path or name
-  std::string environment;  // "sky.hdr", "default", "none", "of the scene"
-  std::string camera;       // "camera 0 'Main'", "automatic"
-  std::string parameters;   // "bounces=12 clamp=0"
-  std::string device;       // kinds; several are separated by kDeviceSeparator
+  std::string scene;                      // path or name
+  std::string environment;                // "sky.hdr", "default", "none", "of the scene"
+  std::string camera;                     // "camera 0 'Main'", "automatic"
+  std::optional<double> framesPerSecond;  // of an animated scene; else unset
+  std::string parameters;                 // "bounces=12 clamp=0"
+  std::string device;                     // kinds; several are separated by kDeviceSeparator
   std::string driver;
-  double seconds = 0;       // wall clock of rendering
+  double seconds = 0;       // wall clock of rendering; of an image of an animation, those of its frame
   double batchSeconds = 0;  // of the last batch
   std::optional<double> targetError;
   std::string limits;              // of the request: "64 samples, 60 s"; not stored

@@ -128,7 +128,7 @@ RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::s
 void RenderJob::prepare(Observer& observer) {
   const RenderRequest& request = job_.request;
   if (!request.checkpoint.file.empty())
-    checkpoint_.emplace(request.checkpoint);  // its lock fails before anything is loaded
+    checkpoint_.emplace(request.checkpoint, observer);  // its lock fails before anything is loaded
   if (scene_ && scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program)) scene_ = nullptr;
   std::optional<SceneLoading> loading;
   if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
@@ -506,6 +506,7 @@ Provenance RenderJob::makeProvenance() const {
   p.scene = job_.scene.path();
   p.environment = scene_->environment;
   p.camera = scene_->cameraDescription;
+  if (scene_->onDevice->animated()) p.framesPerSecond = request.framesPerSecond;
   p.parameters = job_.parameters.describe();
   describeDevices(*team_, p);
   p.targetError = request.limits.error;
@@ -658,7 +659,7 @@ auto RenderJob::reportingHang(Observer& observer, const Function& function) {
   try {
     return function();
   } catch (const TimeoutError& error) {
-    observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
+    observer.deviceHung(hangDiagnostic(job_.program, error));
     throw;
   }
 }

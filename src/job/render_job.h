@@ -232,7 +232,8 @@ class RenderJob {
     bool missed = false;
     RenderResult last, earlier;
   };
-  // Passes a frame on to the observer. Returns false if it is the last one, or the observer stops.
+  // Passes a frame on to the observer, with its own time; `seconds` is that of all frames so far. Returns false if it is the
+  // last one, or the observer stops.
   bool addToSequence(FrameSequence& sequence, std::uint32_t frame, RenderResult result, double seconds,
                      Observer& observer);
   RenderResult endSequence(FrameSequence sequence);

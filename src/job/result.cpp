@@ -119,6 +119,7 @@ void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<r
 
 void addFrame(RenderResult& result, const RenderResult& frame) {
   Provenance& p = result.provenance;
+  p.rays += frame.provenance.rays;
   p.droppedSamples += frame.provenance.droppedSamples;
   result.skippedTraces += frame.skippedTraces;
   p.firstDroppedSample = firstOf(p.firstDroppedSample, frame.provenance.firstDroppedSample);

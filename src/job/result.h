@@ -97,7 +97,7 @@ struct RenderResult {
 // Stores what the film counted in the result and its provenance: rays, discarded samples, and pixels that are not
 // finite.
 void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<render::NotFinitePixels> notFinite);
-// Adds the discarded samples, the skipped traces and the pixels that are not finite in a further frame of an animation.
+// Adds the rays, the discarded samples, the skipped traces and the pixels that are not finite in a further frame of an animation.
 void addFrame(RenderResult& result, const RenderResult& frame);
 
 // What a user must know about a complete or interrupted render: a missed target error, unless the render was interrupted,

@@ -125,9 +125,13 @@ program::Program withRequestedHeatMaps(program::Program program, const OutputReq
   return program::withHeatMaps(std::move(program), names);
 }
 
-OutputPlan planOutputs(const OutputRequest& request, const program::Program& program, const job::FrameRequest& frames) {
+OutputPlan planOutputs(const OutputRequest& requested, const program::Program& program,
+                       const job::FrameRequest& frames) {
   OutputPlan plan;
-  plan.request = request;
+  OutputRequest& request = plan.request = requested;
+  // The frames of an animation are images of their own. Those of a program that accumulates lead to one image.
+  request.everyFrame = request.everyFrame || (program.accumulation == program::Accumulation::film &&
+                                              frames.lastFrame() > frames.firstFrame());
   plan.kind = checkRequest(request);
   plan.outputs = selectOutputs(request, program);
   for (const std::size_t output : plan.outputs) plan.outputNames.push_back(program.outputs[output].name);

@@ -35,10 +35,11 @@ struct ExrFormat {
 };
 
 struct OutputRequest {
-  std::filesystem::path file;              // or standard output: isStandardOutput()
-  std::string output;                      // of the program; empty means the first
-  bool allOutputs = false;                 // one file for each output
-  bool everyFrame = false;                 // the names of files contain the frame number (file_names.h)
+  std::filesystem::path file;  // or standard output: isStandardOutput()
+  std::string output;          // of the program; empty means the first
+  bool allOutputs = false;     // one file for each output
+  // An image of each frame, with its number in the name (file_names.h). In a plan, also for several frames of an animation.
+  bool everyFrame = false;
   std::vector<std::string> layers;         // names of layers besides the image, or "all"
   std::optional<double> exposure;          // stops; PNG only. Default: 0, or as stored in a film
   std::optional<render::ToneMap> toneMap;  // PNG only. Default: by the kind of output, or as stored in a film

@@ -72,6 +72,9 @@ std::vector<std::byte> encodeExr(const OutputPlan& plan, const job::RenderResult
   image.height = p.region.height;
   image.window = {p.region.x, p.region.y, p.size.x, p.size.y};
   image.metadata = metadataOf(plan, result, provenanceOf(result, plane.name));
+  // As OpenEXR's standard attributes describe them (ImfStandardAttributes.h).
+  if (plane.color) image.attributes.push_back({"chromaticities", io::ExrChromaticities()});
+  if (p.framesPerSecond) image.attributes.push_back({"framesPerSecond", io::exrFrameRate(*p.framesPerSecond)});
   if (p.worldToCamera && p.worldToNdc) {
     image.attributes.push_back({"worldToCamera", *p.worldToCamera});
     image.attributes.push_back({"worldToNDC", *p.worldToNdc});

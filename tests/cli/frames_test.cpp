@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // `run` with programs that render frame by frame: number of frames, written frames, file names.
+#include <algorithm>
 #include <csignal>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "base/file.h"
 #include "fixtures.h"
 #include "io/codec.h"
+#include "io/exr/exr.h"
 
 namespace quintet::test {
 namespace {
@@ -146,16 +149,60 @@ TEST_F(Frames, AnimatedScenes) {
   write(folder_ / "moving.scene.toml", kMovingQuad);
   const std::vector<std::string> run{"run",   "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q",
                                      "--env", "none"};
-  auto all = run, last = run;
+  auto all = run, numbered = run;
   all.insert(all.end(), {"--frames", "3", "-o", "m.%d.exr"});
-  last.insert(last.end(), {"--frames", "3", "-o", "last.exr"});
+  numbered.insert(numbered.end(), {"--frames", "1-2", "-o", "n.exr"});
   const RunResult result = quintet(all);
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NEAR(readImage("m.0.exr").pixel<float>(8, 6)[2], 1.0f, 0.01f);  // normal of the quad, which faces the camera
   EXPECT_NEAR(readImage("m.2.exr").pixel<float>(8, 6)[2], 0.0f, 0.01f);  // outside of the image
   EXPECT_NE(readImage("m.1.exr").data, readImage("m.0.exr").data);
-  ASSERT_EQ(quintet(last).status, 0);
-  EXPECT_EQ(readImage("last.exr").data, readImage("m.2.exr").data);
+  // Without a pattern, no frame is lost.
+  ASSERT_EQ(quintet(numbered).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "n.exr"));
+  EXPECT_EQ(readImage("n.0001.exr").data, readImage("m.1.exr").data);
+  EXPECT_EQ(readImage("n.0002.exr").data, readImage("m.2.exr").data);
+  auto single = run, piped = run, film = run;
+  single.insert(single.end(), {"--frames", "1", "-o", "one.exr"});
+  EXPECT_EQ(quintet(single).status, 0);
+  EXPECT_EQ(readImage("one.exr").data, readImage("m.0.exr").data);
+  piped.insert(piped.end(), {"--frames", "2", "-o", "-"});
+  expectError(quintet(piped), 2, {"standard output takes one image"});
+  expectError(quintet({"render", "moving.scene.toml", "--frames", "2", "-o", "a.qfilm", "-q"}), 2,
+              {"a film holds one frame"});
+}
+
+// The time of a frame is its own, not that of all frames so far; the rays of the report are those of all.
+TEST_F(Frames, TimesAndRaysOfAnimations) {
+  write(folder_ / "moving.scene.toml", kMovingQuad);
+  const RunResult result =
+      quintet({"render", "moving.scene.toml", "--program", "normals", "--size", "32x24", "--spp", "256", "--env",
+               "none", "--frames", "6", "--fps", "23.976", "-o", "f#.exr", "-q", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  double sum = 0, largest = 0;
+  std::uint64_t rays = 0;
+  for (int frame = 0; frame < 6; ++frame) {
+    const std::string name = fmt::format("f{}.exr", frame);
+    const std::vector<std::byte> bytes = readFile(folder_ / name);
+    double seconds = 0;
+    for (const auto& [key, text] : io::readMetadata(bytes, name)) {
+      if (key == "Seconds") seconds = std::stod(text);
+      if (key == "Rays") rays += std::stoull(text);
+    }
+    EXPECT_NEAR(json["frames"][static_cast<std::size_t>(frame)]["seconds"].get<double>(), seconds, 1e-9);
+    sum += seconds;
+    largest = std::max(largest, seconds);
+    const io::ExrImage image = io::decodeExr(bytes, name);
+    const auto attribute = [&](const char* key) {
+      const auto found = std::ranges::find(image.attributes, key, &io::ExrAttribute::name);
+      return found == image.attributes.end() ? io::ExrValue() : found->value;
+    };
+    EXPECT_EQ(attribute("framesPerSecond"), io::ExrValue(io::ExrRational{24000, 1001}));
+  }
+  EXPECT_LT(largest, 0.9 * sum);
+  EXPECT_NEAR(json["seconds"]["render"].get<double>(), sum, 1e-6);
+  EXPECT_EQ(json["rays"], rays);
 }
 
 // The frames of an animation that is split over processes are those of the whole one.

@@ -5,6 +5,7 @@
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
+#include <ImfFramesPerSecond.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfRationalAttribute.h>
@@ -75,6 +76,13 @@ struct Inserter {
   void operator()(const vec3& v) const { header.insert(name, Imf::V3fAttribute({v.x, v.y, v.z})); }
   void operator()(const mat4& m) const { header.insert(name, Imf::M44fAttribute(toImath(m))); }
   void operator()(const std::vector<std::string>& list) const { header.insert(name, Imf::StringVectorAttribute(list)); }
+  void operator()(const ExrRational& r) const {
+    header.insert(name, Imf::RationalAttribute({r.numerator, r.denominator}));
+  }
+  void operator()(const ExrChromaticities& c) const {
+    const auto toV2f = [](const vec2& v) { return Imath::V2f(v.x, v.y); };
+    header.insert(name, Imf::ChromaticitiesAttribute({toV2f(c.red), toV2f(c.green), toV2f(c.blue), toV2f(c.white)}));
+  }
 };
 
 void checkName(const Imf::Header& header, const std::string& name) {
@@ -93,6 +101,13 @@ std::optional<ExrValue> valueOf(const Imf::Attribute& attribute) {
     return vec3(v->value().x, v->value().y, v->value().z);
   if (const auto* m = dynamic_cast<const Imf::M44fAttribute*>(&attribute)) return fromImath(m->value());
   if (const auto* list = dynamic_cast<const Imf::StringVectorAttribute*>(&attribute)) return list->value();
+  if (const auto* r = dynamic_cast<const Imf::RationalAttribute*>(&attribute))
+    return ExrRational{r->value().n, r->value().d};
+  if (const auto* c = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute)) {
+    const auto toVec2 = [](const Imath::V2f& v) { return vec2(v.x, v.y); };
+    const Imf::Chromaticities& value = c->value();
+    return ExrChromaticities{toVec2(value.red), toVec2(value.green), toVec2(value.blue), toVec2(value.white)};
+  }
   return std::nullopt;
 }
 
@@ -112,6 +127,11 @@ struct Describer {
   std::string operator()(const std::vector<std::string>& list) const {
     return fmt::format("{}", fmt::join(list, ", "));
   }
+  std::string operator()(const ExrRational& r) const { return fmt::format("{}/{}", r.numerator, r.denominator); }
+  std::string operator()(const ExrChromaticities& c) const {
+    return fmt::format("red {}, {}; green {}, {}; blue {}, {}; white {}, {}", c.red.x, c.red.y, c.green.x, c.green.y,
+                       c.blue.x, c.blue.y, c.white.x, c.white.y);
+  }
 };
 
 std::string textOf(const Imf::Attribute& attribute) {
@@ -120,17 +140,15 @@ std::string textOf(const Imf::Attribute& attribute) {
     return fmt::format("{}, {}", v->value().x, v->value().y);
   if (const auto* b = dynamic_cast<const Imf::Box2iAttribute*>(&attribute))
     return fmt::format("{}, {}, {}, {}", b->value().min.x, b->value().min.y, b->value().max.x, b->value().max.y);
-  if (const auto* r = dynamic_cast<const Imf::RationalAttribute*>(&attribute))
-    return fmt::format("{}/{}", r->value().n, r->value().d);
-  if (const auto* c = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute)) {
-    const Imf::Chromaticities& x = c->value();
-    return fmt::format("red {}, {}; green {}, {}; blue {}, {}; white {}, {}", x.red.x, x.red.y, x.green.x, x.green.y,
-                       x.blue.x, x.blue.y, x.white.x, x.white.y);
-  }
   return "";
 }
 
 }  // namespace
+
+ExrRational exrFrameRate(double framesPerSecond) {
+  const Imf::Rational rate = Imf::guessExactFps(framesPerSecond);
+  return {rate.n, rate.d};
+}
 
 void addMetadata(Imf::Header& header, const Metadata& metadata) {
   checkMetadata(metadata);

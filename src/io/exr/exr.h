@@ -41,7 +41,21 @@ struct ExrWindow {
   std::uint32_t width = 0, height = 0;  // of the whole image; 0 if the region is the whole image
 };
 
-using ExrValue = std::variant<std::string, std::int32_t, float, double, vec2, vec3, mat4, std::vector<std::string>>;
+struct ExrRational {
+  std::int32_t numerator = 0;
+  std::uint32_t denominator = 1;
+  bool operator==(const ExrRational&) const = default;
+};
+// CIE xy of the primaries and the white point; by default those of Rec. 709 and sRGB.
+struct ExrChromaticities {
+  vec2 red{0.64f, 0.33f}, green{0.30f, 0.60f}, blue{0.15f, 0.06f}, white{0.3127f, 0.3290f};
+  bool operator==(const ExrChromaticities&) const = default;
+};
+using ExrValue = std::variant<std::string, std::int32_t, float, double, vec2, vec3, mat4, std::vector<std::string>,
+                              ExrRational, ExrChromaticities>;
+
+// The rate of frames, above 0, as a fraction: 24/1, and 24000/1001 for 23.976.
+ExrRational exrFrameRate(double framesPerSecond);
 
 // A mat4 is stored for row vectors, as readers of OpenEXR expect (worldToCamera, worldToNDC).
 struct ExrAttribute {

@@ -112,6 +112,22 @@ TEST_F(PlanOutputs, StandardOutput) {
   EXPECT_THAT(errorFor({.file = "-.exr", .everyFrame = true}), HasSubstr("standard output"));
 }
 
+// Each frame of an animation is an image; the frames of a program that accumulates lead to one.
+TEST_F(PlanOutputs, FramesOfAnimationsAreNumbered) {
+  const auto numbers = [&](const program::Program& program, const job::FrameRequest& frames,
+                           const char* file = "a.png") {
+    return planOutputs({.file = folder_ / file}, program, frames).request.everyFrame;
+  };
+  EXPECT_TRUE(numbers(program_, {.count = 2}));
+  EXPECT_TRUE(numbers(program_, {.count = 2, .first = 5}));
+  EXPECT_FALSE(numbers(program_, {.count = 1, .first = 5}));
+  EXPECT_FALSE(numbers(program_, {}));
+  EXPECT_THROW(numbers(program_, {.count = 2}, "-"), UsageError);
+  program::Program accumulating = program_;
+  accumulating.accumulation = program::Accumulation::program;
+  EXPECT_FALSE(numbers(accumulating, {.count = 2}));
+}
+
 TEST_F(PlanOutputs, BitsOfPngFiles) {
   OutputRequest deep = request("out.png");
   deep.pngBits = 16;

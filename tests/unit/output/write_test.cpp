@@ -2,11 +2,16 @@
 // The files of a plan: their names, their contents, and the list of them.
 #include "output/write.h"
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 
 #include "base/file.h"
 #include "io/codec.h"
 #include "io/color.h"
+#include "io/exr/exr.h"
 #include "job/films.h"
 #include "program/load.h"
 #include "temp_folder.h"
@@ -50,6 +55,30 @@ TEST_F(WriteOutputs, NamesOfFrames) {
   EXPECT_THAT(namesOf(write({.file = "f####.png", .everyFrame = true}, {})), ElementsAre("f0000.png")) << "one image";
   EXPECT_THAT(namesOf(write({.file = "f.png", .everyFrame = true}, {})), ElementsAre("f.png"));
   EXPECT_THAT(namesOf(write({.file = "f#.png"}, 7)), ElementsAre("f#.png")) << "a name that is not a pattern";
+}
+
+// As readers with color management, and programs for sequences, expect.
+TEST_F(WriteOutputs, ExrStatesItsPrimariesAndItsFrameRate) {
+  const auto attributeOf = [&](const job::RenderResult& result, const char* name) -> std::optional<io::ExrValue> {
+    writeOutputs(planOutputs({.file = folder_ / "a.exr"}, program::loadProgram("normals")), result, observer_);
+    for (const io::ExrAttribute& attribute : io::decodeExr(readFile(folder_ / "a.exr"), "a.exr").attributes)
+      if (attribute.name == name) return attribute.value;
+    return std::nullopt;
+  };
+  const io::ExrValue rec709 = io::ExrChromaticities{{0.64f, 0.33f}, {0.3f, 0.6f}, {0.15f, 0.06f}, {0.3127f, 0.329f}};
+  job::RenderResult result = makeResult();
+  EXPECT_EQ(attributeOf(result, "chromaticities"), rec709);
+  EXPECT_EQ(attributeOf(result, "framesPerSecond"), std::nullopt);
+  const std::vector<std::pair<double, io::ExrRational>> rates{
+      {24.0, {24, 1}}, {23.976, {24000, 1001}}, {29.97, {30000, 1001}}, {12.5, {25, 2}}};
+  for (const auto& [rate, fraction] : rates) {
+    result.provenance.framesPerSecond = rate;
+    EXPECT_EQ(attributeOf(result, "framesPerSecond"), io::ExrValue(fraction)) << rate;
+  }
+  render::FilmState data = result.film->state();
+  data.planes[0].color = false;
+  result.film = job::viewOf(std::move(data), false);
+  EXPECT_EQ(attributeOf(result, "chromaticities"), std::nullopt) << "no colors";
 }
 
 TEST_F(WriteOutputs, PngWith16Bits) {
