@@ -119,15 +119,18 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
   return jsonLine(json);
 }
 
-std::string errorJson(const std::string& message, const FileError* file, int exitStatus) {
+std::string errorJson(const std::string& message, const FileError* file, int exitStatus, const std::string& scene) {
   const auto known = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
-  const Json json{{"error",
-                   {{"message", message},
-                    {"file", file ? known(file->file().string()) : Json()},
-                    {"location", file ? known(file->location()) : Json()},
-                    {"exitStatus", exitStatus}}}};
+  Json json{{"error",
+             {{"message", message},
+              {"file", file ? known(file->file().string()) : Json()},
+              {"location", file ? known(file->location()) : Json()},
+              {"exitStatus", exitStatus}}}};
+  if (!scene.empty()) json["error"]["scene"] = scene;
   return jsonLine(json);
 }
+
+std::string sceneJson(const std::filesystem::path& scene) { return jsonLine({{"scene", scene.string()}}); }
 
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files,
                           const std::vector<FrameFiles>& frames) {

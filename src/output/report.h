@@ -3,6 +3,7 @@
 #ifndef QUINTET_OUTPUT_REPORT_H
 #define QUINTET_OUTPUT_REPORT_H
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,12 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
                        const std::vector<FrameFiles>& frames = {});
 
 // A failed command as one object on one line: {"error": {"message", "file", "location", "exitStatus"}}. `file`: the error if
-// it is about a file, else null; then the file and its location are null, as is a location that is unknown.
-std::string errorJson(const std::string& message, const FileError* file, int exitStatus);
+// it is about a file, else null; then the file and its location are null, as is a location that is unknown. `scene`: of
+// several, the one that failed, as "scene" in the object; empty for a command with one scene.
+std::string errorJson(const std::string& message, const FileError* file, int exitStatus, const std::string& scene = {});
+
+// {"scene": "fox.glb"} on one line: begins the progress of one of several scenes.
+std::string sceneJson(const std::filesystem::path& scene);
 
 // A line that a program printed: "hit.rchit:12: pixel 3,4, sample 0: t = 1.5". Further lines of its text are indented.
 std::string printedText(const job::PrintedLine& line);

@@ -48,15 +48,17 @@ int failureStatus(const std::exception& error) {
   return dynamic_cast<const farm::VersionError*>(&error) ? kWrongVersion : kRuntimeError;
 }
 
-int reportFailure(const std::exception& error, FailureJson json, const std::string& hint) {
+int reportFailure(const std::exception& error, FailureJson json, const std::string& hint,
+                  const std::filesystem::path& scene) {
   const int status = failureStatus(error);
   const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
   std::string message = memory ? "out of memory" : error.what();
   if (const auto* ours = dynamic_cast<const Error*>(&error)) message += optionHint(ours->remedy());
   if (!memory) message += hint;
+  if (message.find(scene.filename().string()) == message.npos) message = scene.string() + ": " + message;
   const auto* file = dynamic_cast<const FileError*>(&error);
   if (json == FailureJson::object)
-    printFailureJson(output::errorJson(message, file, status));
+    printFailureJson(output::errorJson(message, file, status, scene.string()));
   else if (json == FailureJson::diagnostics)
     printFailureJson(check::diagnosticsJson({file ? asDiagnostic(*file) : Diagnostic{.text = message}}));
   return printFailure(message, status);

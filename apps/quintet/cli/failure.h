@@ -4,6 +4,7 @@
 #define QUINTET_CLI_FAILURE_H
 
 #include <exception>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -26,8 +27,9 @@ FailureJson failureJson(std::span<const std::string> arguments);
 int printFailure(std::string message, int status);
 
 // Prints the error with the option that helps, also as JSON. `hint`: appended to the message, for example "; write 'x'".
-// Returns the exit status.
-int reportFailure(const std::exception& error, FailureJson json, const std::string& hint = {});
+// `scene`: one of several that the command renders; the message names it. Returns the exit status.
+int reportFailure(const std::exception& error, FailureJson json, const std::string& hint = {},
+                  const std::filesystem::path& scene = {});
 // The status of a command that this error ends.
 int failureStatus(const std::exception& error);
 

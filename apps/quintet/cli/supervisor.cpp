@@ -82,11 +82,13 @@ void reportCrash(int signal, std::span<const std::string> arguments) {
   const std::string text =
       fmt::format("crash in the driver or in Quintet{}{} (signal {}, {}); see docs/debugging.md, \"Crashes\"",
                   stage.empty() ? "" : " while ", stage, signal, description ? description : "unknown");
-  const std::string message = program.empty() ? text : fmt::format("{}: {}", program, text);
+  const SceneProgress scenes = sceneProgress();
+  const std::string object = scenes.unfinished ? scenes.name : program;
+  const std::string message = object.empty() ? text : fmt::format("{}: {}", object, text);
   if (!workFile().empty()) TemporaryFile::removeLeftovers(workFile());
   const FailureJson json = failureJson(arguments);
   if (json == FailureJson::object) {
-    printFailureJson(output::errorJson(message, nullptr, kCrashed));
+    printFailureJson(output::errorJson(message, nullptr, kCrashed, scenes.unfinished ? scenes.name : ""));
   } else if (json == FailureJson::diagnostics) {
     std::vector<std::string> arrays = workResults();
     arrays.push_back(check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}}));
@@ -104,6 +106,13 @@ int relay(int status) {
   std::signal(signal, SIG_DFL);
   ::raise(signal);
   return 128 + signal;
+}
+
+// Of a command with several scenes: whether the child has ended before the scene that it was rendering, for a reason that
+// does not end the command. A launch that hangs ends the child with a status.
+bool continuesWithNextScene(int status) {
+  if (stopped || !sceneProgress().unfinished) return false;
+  return WIFSIGNALED(status) ? isCrash(WTERMSIG(status)) || WTERMSIG(status) == SIGKILL : WEXITSTATUS(status) < 128;
 }
 
 // Returns the child's process id; 0 in the child, negative if no process can be created.
@@ -168,6 +177,10 @@ std::optional<int> supervise(std::span<const std::string> arguments) {
     const int status = *ended;
     const bool crashed = WIFSIGNALED(status) && isCrash(WTERMSIG(status));
     if (crashed) reportCrash(WTERMSIG(status), arguments);
+    if (continuesWithNextScene(status)) {
+      if (WIFSIGNALED(status) && !crashed) relay(status);  // prints that it was killed
+      continue;
+    }
     // With --watch, a lost device ends the child as a crash does.
     if (!crashed && !(WIFEXITED(status) && WEXITSTATUS(status) == kCrashed)) return relay(status);
     if (stopped || !waitForSave()) return kCrashed;

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <string>
@@ -98,6 +99,35 @@ std::vector<std::string> workResults() {
   for (std::size_t at = 0, end; (end = text.find('\n', at)) != text.npos; at = end + 1)
     lines.push_back(text.substr(at, end - at));
   return lines;
+}
+
+// In the lines of results: "+SCENE NAME" begins a scene, "=SCENE" and "!SCENE" end it.
+void sceneBegins(std::size_t scene, std::string_view name) {
+  std::string line = "+" + std::to_string(scene) + " " + std::string(name);
+  std::ranges::replace(line, '\n', ' ');
+  addWorkResult(line + "\n");
+}
+
+void sceneEnds(std::size_t scene, bool failed) { addWorkResult((failed ? "!" : "=") + std::to_string(scene) + "\n"); }
+
+void scenesEnd() { clearWorkResults(); }
+
+SceneProgress sceneProgress() {
+  SceneProgress progress;
+  for (const std::string& line : workResults()) {
+    const std::size_t scene = std::strtoull(line.c_str() + 1, nullptr, 10);
+    if (line[0] == '+') {
+      if (progress.unfinished) progress.failed.push_back(progress.next - 1);
+      progress.next = scene + 1;
+      progress.unfinished = true;
+      progress.name = line.substr(std::min(line.find(' ') + 1, line.size()));
+    } else {
+      if (line[0] == '!') progress.failed.push_back(scene);
+      progress.unfinished = false;
+    }
+  }
+  if (progress.unfinished) progress.failed.push_back(progress.next - 1);
+  return progress;
 }
 
 void setWorkFile(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #ifndef QUINTET_CLI_WORK_H
 #define QUINTET_CLI_WORK_H
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -25,6 +26,19 @@ void setWatchedFiles(const job::WatchList& list);     // as far as 64 KiB suffic
 // Results of the command so far that its --json prints at the end, in one line each. They are complete or missing.
 void addWorkResult(const std::string& line);
 void clearWorkResults();  // they are printed, or the command starts over
+
+// Of a command that works on several scenes, so that a new process continues after a scene that has ended the first one.
+void sceneBegins(std::size_t scene, std::string_view name);
+void sceneEnds(std::size_t scene, bool failed);
+void scenesEnd();  // the command ends for a reason that applies to all scenes
+
+struct SceneProgress {
+  std::vector<std::size_t> failed;  // with the one that has not ended
+  std::size_t next = 0;             // scene
+  bool unfinished = false;          // a scene was begun and has not ended
+  std::string name;                 // of the scene that was begun last
+};
+SceneProgress sceneProgress();
 
 // In the parent, after the child has ended. Empty if unknown.
 std::string_view workStage();

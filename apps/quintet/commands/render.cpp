@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,10 +20,12 @@
 #include "cli/values.h"
 #include "cli/work.h"
 #include "job/render_job.h"
+#include "job/scene_batch.h"
 #include "output/file_names.h"
 #include "output/frame_files.h"
 #include "output/layers.h"
 #include "output/report.h"
+#include "output/scene_files.h"
 #include "output/write.h"
 #include "program/heat.h"
 #include "program/help.h"
@@ -31,11 +34,20 @@
 namespace quintet::cli {
 namespace {
 
-OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
-  OptionTable table("render", "Renders a scene with the path tracer, or with another program.");
+// The command line as it was parsed.
+struct RenderCommand {
+  RenderOptions options;
+  RenderTexts texts;
+  std::vector<std::filesystem::path> scenes;
+};
+
+OptionTable declareRender(RenderCommand& command) {
+  RenderOptions& options = command.options;
+  RenderTexts& texts = command.texts;
+  OptionTable table("render", "Renders scenes with the path tracer, or with another program.");
   table.add({{.names = "SCENE",
-              .help = "Scene file: .gltf, .glb or .scene.toml",
-              .target = &texts.scene,
+              .help = "Scene files: .gltf, .glb or .scene.toml",
+              .target = &command.scenes,
               .candidates = {.extensions = kSceneExtensions},
               .required = true}});
   table.add(
@@ -43,9 +55,9 @@ OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
       {{.names = "-o,--output",
         .value = "FILE",
         .help =
-            "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); #### is the frame number; "
-            ".mp4, .webm or .gif is a video of --frames; - is PNG on standard output, -.exr OpenEXR (default: "
-            "SCENE.png in the current folder)",
+            "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); #### is the frame number, "
+            "{scene} the name of the scene file, {folder} that of its folder; .mp4, .webm or .gif is a video of "
+            "--frames; - is PNG on standard output, -.exr OpenEXR (default: SCENE.png in the current folder)",
         .target = &texts.output,
         .candidates = {.extensions = {"png", "exr", "hdr", "qfilm", "mp4", "webm", "gif"}}}});
   declareRendering(table, texts, options);
@@ -53,7 +65,7 @@ OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
       "Program",
       {{.names = "--help-program", .help = "Print the program's parameters and exit", .target = &options.programHelp}});
   declarePrint(table, texts);
-  declareProcess(table, texts, options, kLaunchLimitHelp);
+  declareProcess(table, texts, options);
   table.add("Run", {{.names = "--json",
                      .help = "Print one JSON object on standard output at the end",
                      .target = &options.console.json}});
@@ -61,6 +73,7 @@ OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
   table.addExamples({
       {"quintet render scene.glb", "scene.png"},
       {"quintet render scene.glb -o out.exr --size 1920x1080 --spp 256"},
+      {"quintet render a.glb b.glb -o 'out/{scene}.png'", "several scenes, faster than one by one"},
       {"quintet render scene.glb -o out.exr --aov albedo,normal", "with layers; --aov list prints their names"},
       {"quintet render scene.glb --time 60 --env sky.hdr", "as many samples as possible in a minute"},
       {"quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35"},
@@ -79,25 +92,87 @@ OptionTable declareRender(RenderOptions& options, RenderTexts& texts) {
   return table;
 }
 
-std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
-  RenderOptions options;
-  RenderTexts texts;
-  if (!parse(declareRender(options, texts), arguments)) return std::nullopt;
-  options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
-  if (options.programHelp || options.layerList) return options;
-  if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
-  const std::filesystem::path scene = texts.scene == kStandardInput ? "stdin" : texts.scene;
-  options.output.file =
-      texts.output.empty() ? scene.filename().replace_extension(".png") : std::filesystem::path(texts.output);
-  options.request.commandLine = commandLine("render", arguments);
-  convertRendering(texts, options);
-  checkStandardStreams(options);
-  return options;
+// The options of each scene. Throws UsageError for what is wrong with any of them.
+std::vector<RenderOptions> optionsOfScenes(const RenderCommand& command, Arguments arguments) {
+  const std::vector<std::filesystem::path>& scenes = command.scenes;
+  if (scenes.empty()) throw UsageError("no scene given; see 'quintet render --help'");
+  std::vector<std::filesystem::path> files, checkpoints;
+  if (!command.texts.output.empty() || scenes.size() > 1) files = output::sceneFiles(command.texts.output, scenes);
+  if (const auto& file = command.options.request.checkpoint.file; !file.empty())
+    checkpoints = output::sceneFiles(file, scenes);
+  std::vector<RenderOptions> all;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    RenderOptions& options = all.emplace_back(command.options);
+    RenderTexts texts = command.texts;
+    texts.scene = scenes[i].string();
+    const std::filesystem::path named = scenes[i] == kStandardInput ? "stdin" : scenes[i];
+    options.output.file = files.empty() ? named.filename().replace_extension(".png") : files[i];
+    if (!texts.output.empty()) texts.output = options.output.file.string();
+    if (!checkpoints.empty()) options.request.checkpoint.file = checkpoints[i];
+    options.request.commandLine = commandLine("render", arguments);
+    convertRendering(texts, options);
+    checkStandardStreams(options);
+    std::error_code ignored;  // of a folder that depends on the scene; writing reports it
+    if (texts.output != command.texts.output)
+      std::filesystem::create_directories(std::filesystem::path(texts.output).parent_path(), ignored);
+  }
+  return all;
 }
 
 // Of the rendered part; 0 if it depends on the scene.
 uvec2 requestedSize(const job::RenderRequest& request) {
   return request.region.width > 0 ? uvec2{request.region.width, request.region.height} : request.size;
+}
+
+// Throws UsageError for what is wrong with the options, so that no scene is rendered before.
+void checkOptions(const RenderOptions& options, const program::Program& named) {
+  try {
+    const program::Program program = output::withRequestedHeatMaps(named, options.output);
+    const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
+    job::resolve(requestFor(options, plan), program);
+  } catch (const FileError&) {  // of this scene: reported when its turn comes
+  }
+}
+
+// Of several scenes. Returns the exit status.
+int renderScenes(std::span<const std::filesystem::path> scenes, std::span<const RenderOptions> options,
+                 const program::Program& program) {
+  for (const RenderOptions& one : options) checkOptions(one, program);
+  const SceneProgress before = sceneProgress();  // of a process that has ended in the middle of a scene
+  RenderDevices devices;
+  int interruptedStatus = 0;
+  job::SceneBatch batch;
+  batch.count = scenes.size();
+  batch.first = before.next;
+  batch.render = [&](std::size_t scene) {
+    const Stopwatch clock;
+    sceneBegins(scene, scenes[scene].string());
+    if (options[scene].console.jsonProgress) printError(output::sceneJson(scenes[scene]));
+    const int status = renderImages(options[scene], program, clock, devices);
+    sceneEnds(scene, status == kRuntimeError);
+    if (status > 128) interruptedStatus = status;
+    return status > 128                  ? job::SceneEnd::interrupted
+           : status == kRuntimeError     ? job::SceneEnd::failed
+           : status == kTargetNotReached ? job::SceneEnd::targetMissed
+                                         : job::SceneEnd::rendered;
+  };
+  batch.failed = [&](std::size_t scene, const std::exception& error) {
+    reportFailure(error, options[scene].console.json ? FailureJson::object : FailureJson::none, "", scenes[scene]);
+    sceneEnds(scene, true);
+  };
+  job::SceneBatchResult result;
+  try {
+    result = job::renderScenes(devices.engine(options.front()), batch);
+  } catch (...) {
+    scenesEnd();
+    throw;
+  }
+  std::vector<std::size_t> failed = before.failed;
+  failed.insert(failed.end(), result.failed.begin(), result.failed.end());
+  if (!failed.empty()) printFailure(job::failedScenesText(scenes, failed), kRuntimeError);
+  if (result.interrupted) return interruptedStatus;
+  if (!failed.empty()) return kRuntimeError;
+  return result.targetMissed ? kTargetNotReached : 0;
 }
 
 }  // namespace
@@ -110,6 +185,8 @@ void addWarnings(job::RenderResult& result, Console& console) {
 
 job::RenderRequest requestFor(const RenderOptions& options, const output::OutputPlan& plan) {
   job::RenderRequest request = options.request;
+  request.frames.every =
+      request.frames.every || (plan.request.everyFrame && request.frames.lastFrame() > request.frames.firstFrame());
   request.outputs = plan.optionalOutputs;
   request.outputNotes = plan.notes();
   return request;
@@ -118,7 +195,7 @@ job::RenderRequest requestFor(const RenderOptions& options, const output::Output
 std::string programHelpText(const program::Program& program, std::string_view command) {
   const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(std::string::npos);
   const bool runs = command == "run";
-  std::string options = "RenderOptions: ";
+  std::string options = "Options: ";
   if (runs && program.accumulation == program::Accumulation::program) options += "--frames N; ";
   options += fmt::format("--set NAME=VALUE for parameters; {}--all-outputs and --aov NAMES for outputs.",
                          runs ? "--output NAME, " : "");
@@ -127,7 +204,26 @@ std::string programHelpText(const program::Program& program, std::string_view co
                      program::describeAsText(program, width), wrapped(options, width, 0), command);
 }
 
+job::Engine& RenderDevices::engine(const RenderOptions& options) {
+  if (!engine_)
+    engine_.emplace(job::EngineOptions{.device = options.device,
+                                       .log =
+                                           [this](LogLevel level, const std::string& text) {
+                                             Console* console = console_;
+                                             if (console && level == LogLevel::warning) console->warning(text);
+                                           },
+                                       .severalDevices = true,
+                                       .mixedDevices = options.mixedDevices});
+  return *engine_;
+}
+
 int renderImages(const RenderOptions& options, const program::Program& named, const Stopwatch& clock) {
+  RenderDevices devices;
+  return renderImages(options, named, clock, devices);
+}
+
+int renderImages(const RenderOptions& options, const program::Program& named, const Stopwatch& clock,
+                 RenderDevices& devices) {
   const program::Program program = output::withRequestedHeatMaps(named, options.output);
   const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
   std::optional<output::VideoWriter> video;
@@ -139,17 +235,12 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
   console.setProgram(&program);
   console.displayImage = [&](const job::FilmView& film) { return output::displayImage(plan, film); };
   try {
-    job::ResolvedJob resolved = job::resolve(requestFor(options, plan), program);
+    const job::RenderRequest request = requestFor(options, plan);
+    job::ResolvedJob resolved = job::resolve(request, program);
     if (const std::string text = output::ignoredDisplayText(options.output); !text.empty()) console.note(text);
     output::checkSize(plan, requestedSize(options.request));
-    job::Engine engine({.device = options.device,
-                        .log =
-                            [&](LogLevel level, const std::string& text) {
-                              if (level == LogLevel::warning) console.warning(text);
-                            },
-                        .severalDevices = true,
-                        .mixedDevices = options.mixedDevices});
-    job::RenderJob job(engine, std::move(resolved), console);
+    const RenderDevices::Use use(devices, console);
+    job::RenderJob job(devices.engine(options), std::move(resolved), console);
     output::checkSize(plan, {job.region().width, job.region().height});
     if (options.prepared) options.prepared(job);
     const GracefulStop stop;  // from here on, Ctrl-C completes the batch
@@ -175,15 +266,17 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
       else
         write(result);
       if (!result.provenance.frame) return;
-      const double seconds = result.provenance.seconds - std::exchange(before, result.provenance.seconds);
-      frames.push_back({*result.provenance.frame, filesOf(*result.provenance.frame), seconds});
+      // A program that accumulates renders a frame from those before it.
+      const double earlier = result.accumulatesFrames ? std::exchange(before, result.provenance.seconds) : 0.0;
+      frames.push_back(
+          {*result.provenance.frame, filesOf(*result.provenance.frame), result.provenance.seconds - earlier});
     };
     job::RenderResult result = job.run(options.request.limits, console);
     console.finalImage(*result.film);
     try {
       if (!options.request.overwriteFilm)
         output::checkFilmLoss(plan, result, options.request.load.maxMemory);  // the render can have stopped early
-      if (!options.request.frames.every) write(result);
+      if (!request.frames.every) write(result);
     } catch (...) {
       job.outputsFailed(result, console);
       throw;
@@ -205,22 +298,27 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
 }
 
 OptionTable renderOptions() {
-  RenderOptions options;
-  RenderTexts texts;
-  return declareRender(options, texts).withoutTargets();
+  RenderCommand command;
+  return declareRender(command).withoutTargets();
 }
 
 int renderCommand(Arguments arguments) {
   const Stopwatch clock;
-  const std::optional<RenderOptions> options = parseRenderOptions(arguments);
-  if (!options) return 0;
-  const program::Program program = program::loadProgram(options->program);
-  if (options->programHelp) {
+  RenderCommand command;
+  RenderOptions& options = command.options;
+  if (!parse(declareRender(command), arguments)) return 0;
+  options.layerList = std::ranges::find(command.texts.layers, "list") != command.texts.layers.end();
+  std::vector<RenderOptions> scenes;
+  if (!options.programHelp && !options.layerList) scenes = optionsOfScenes(command, arguments);
+  const program::Program program = program::loadProgram(options.program);
+  if (options.programHelp) {
     writeFile("-", programHelpText(program, "render"));
-  } else if (options->layerList) {
+  } else if (options.layerList) {
     writeFile("-", output::layerList(program));
+  } else if (scenes.size() == 1) {
+    return renderImages(scenes.front(), program, clock);
   } else {
-    return renderImages(*options, program, clock);
+    return renderScenes(command.scenes, scenes, program);
   }
   return 0;
 }
