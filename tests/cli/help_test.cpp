@@ -106,10 +106,28 @@ TEST_F(Help, MissingValuesAreNamed) {
   expectError(quintet({"render", "scene.gltf", "-o"}), 2, {"--output: the value FILE is missing"});
   expectError(quintet({"info", "--json=no"}), 2, {"--json: this option takes no value"});
   expectError(quintet({"bench"}), 2, {"no scene or program given"});
-  expectError(quintet({"render", "--spp", "1", "--spp", "2"}), 2, {"--spp: given 2 times"});
   expectError(quintet({"render", "--size=", "3x3"}), 2, {"--size: the value is empty"});
   expectError(quintet({"bench", "scene.gltf", "--repeat", "0"}), 2, {"--repeat", "[1, 1000]"});
   expectError(quintet({"bench", "scene.gltf", "--repeat", "1.5"}), 2, {"--repeat", "integer"});
+}
+
+// A script that passes its arguments on can append options to its own.
+TEST_F(Help, TheLastOccurrenceOfAnOptionCounts) {
+  const RunResult result =
+      quintet({"render",     "scene.gltf", "--program", "ao", "--program", "normals",  "--spp",   "64",
+               "--spp",      "",           "--spp",     "4",  "--size",    "9x9",      "-q",      "-q",
+               "--size=8x6", "--json",     "--json",    "-o", "first.png", "--output", "last.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["program"], "normals");
+  EXPECT_EQ(json["samples"], 4);
+  EXPECT_EQ(json["files"], nlohmann::json{"last.png"});
+  EXPECT_EQ(readImage("last.png").width, 8u);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "first.png"));
+  expectError(quintet({"render", "scene.gltf", "--spp", "4", "--spp", "four"}), 2, {"--spp", "'four'"});
+  expectError(quintet({"bench", "scene.gltf", "--repeat", "1", "--repeat", "0"}), 2, {"--repeat", "[1, 1000]"});
+  // Lists collect all values, so the unknown one is noticed.
+  expectError(quintet({"render", "scene.gltf", "--set", "nonsense=1", "--set", "bounces=2"}), 2, {"'nonsense'"});
 }
 
 TEST_F(Help, TwoDashesEndTheOptions) {

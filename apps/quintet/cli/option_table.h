@@ -23,7 +23,8 @@ struct Candidates {
 
 // An option, or an argument without a name.
 struct Option {
-  // Where the value goes. A target is left unchanged if the option is not given. Lists collect the values of all occurrences.
+  // Where the value goes. A target is left unchanged if the option is not given. Of several occurrences, the last one counts;
+  // lists collect the values of all.
   using Target = std::variant<std::monostate, bool*, int*, std::string*, std::optional<std::string>*,
                               std::filesystem::path*, std::vector<std::string>*, std::vector<std::filesystem::path>*>;
 

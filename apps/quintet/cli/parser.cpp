@@ -100,8 +100,7 @@ void assign(const Parsed& parsed) {
   std::vector<std::string> values = parsed.results->results();
   const std::string name = option.isArgument() ? option.names : option.longName();
   if (values.empty()) return;
-  if (!option.isList() && !option.isFlag() && values.size() > 1)
-    throw UsageError(fmt::format("{}: given {} times, but it has one value", name, values.size()));
+  if (!option.isList()) values = {values.back()};  // a script can append an option to replace its own
   // `--spp "$N"` with an empty N is a mistake of the caller, not a request for the default.
   if (!option.isArgument() && std::ranges::find(values, "") != values.end()) failEmpty(name);
   if (option.delimiter != 0) {
