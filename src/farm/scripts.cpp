@@ -69,15 +69,16 @@ void requireOneLine(const std::string& text) {
     throw UsageError(fmt::format("'{}' has a line break, which an option of sbatch cannot have", printable(text)));
 }
 
-// For a line "#SBATCH OPTION": sbatch splits it at spaces, and knows quotes, comments and backslashes.
+// For a line "#SBATCH OPTION": sbatch splits it at spaces outside of quotes, and knows comments and backslashes.
 std::string sbatchQuoted(const std::string& option) {
   requireOneLine(option);
-  std::string quoted;
+  if (option.find_first_of(" \t\"'#\\") == option.npos) return option;
+  std::string quoted = "\"";
   for (const char c : option) {
-    if (std::string_view(" \t\"'#\\").find(c) != std::string_view::npos) quoted += '\\';
+    if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }
-  return quoted;
+  return quoted + '"';
 }
 
 std::vector<std::string> ifSet(const std::string& text) {

@@ -242,7 +242,7 @@ class FarmScripts : public testing::Test {
 TEST_F(FarmScripts, OfSlurmWorkInFoldersWithAnyName) {
   // Runs the tasks of the array, and prints the options of the script as sbatch reads them.
   program("sbatch", R"(shift $(($# - 1))
-grep '^#SBATCH' "$1" | sed 's/^#SBATCH //' | xargs -n 1 printf '<%s>\n' > "options.$1"
+grep '^#SBATCH' "$1" | while read -r _ option; do eval "printf '<%s>\n' $option"; done > "options.$1"
 if [[ $1 == render.sbatch ]]; then SLURM_ARRAY_TASK_ID=0 bash "$1"; SLURM_ARRAY_TASK_ID=1 bash "$1"; else bash "$1"; fi
 echo 7)");
   options_.sbatch = {"--comment=it's \"one\" # of \\ two", "--gres=gpu:1"};
