@@ -77,7 +77,7 @@ struct Inserter {
   void operator()(const mat4& m) const { header.insert(name, Imf::M44fAttribute(toImath(m))); }
   void operator()(const std::vector<std::string>& list) const { header.insert(name, Imf::StringVectorAttribute(list)); }
   void operator()(const ExrRational& r) const {
-    header.insert(name, Imf::RationalAttribute({r.numerator, r.denominator}));
+    header.insert(name, Imf::RationalAttribute({r.numerator, static_cast<int>(r.denominator)}));
   }
   void operator()(const ExrChromaticities& c) const {
     const auto toV2f = [](const vec2& v) { return Imath::V2f(v.x, v.y); };
