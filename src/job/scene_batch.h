@@ -27,7 +27,7 @@ struct SceneBatch {
 struct SceneBatchResult {
   std::vector<std::size_t> failed;  // scenes
   bool targetMissed = false;        // of one or more of the others
-  bool interrupted = false;         // the last scene that was begun; those after it were not rendered
+  bool interrupted = false;         // the last scene that was started; those after it were not rendered
 };
 
 // A scene that fails does not stop the others; also if the device is lost, which is opened again. Throws gpu::NoDeviceError,

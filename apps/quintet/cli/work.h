@@ -35,8 +35,8 @@ void scenesEnd();  // the command ends for a reason that applies to all scenes
 struct SceneProgress {
   std::vector<std::size_t> failed;  // with the one that has not ended
   std::size_t next = 0;             // scene
-  bool unfinished = false;          // a scene was begun and has not ended
-  std::string name;                 // of the scene that was begun last
+  bool unfinished = false;          // a scene was started and has not ended
+  std::string name;                 // of the scene that was started last
 };
 SceneProgress sceneProgress();
 
