@@ -157,7 +157,7 @@ constexpr std::array kFields{
     onlyIfSet(field<&P::shutter>(Role::identity, "shutter", "shutter", "Shutter")),
     field<&P::outputs>(Role::identity, "outputs", "", ""),
     field<&P::frame>(Role::result, "", "frame", "Frame"),
-    onlyIfSet(field<&P::framesPerSecond>(Role::note, "frames per second", "framesPerSecond", "FramesPerSecond")),
+    onlyIfSet(field<&P::framesPerSecond>(Role::note, "frames per second", "framesPerSecond", "FrameRate")),
     field<&P::rays>(Role::result, "", "rays", "Rays"),
     field<&P::droppedSamples>(Role::result, "", "droppedSamples", "DroppedSamples"),
     field<&P::firstDroppedSample>(Role::result, "", "firstDroppedSample", "FirstDroppedSample"),

@@ -134,7 +134,7 @@ TEST_F(PreviewOption, WrongValues) {
   EXPECT_EQ(quintet(quick({"--preview=sixl", "--preview=off"})).status, 0);  // the last one counts
   expectError(quintet(quick({"--preview", "--json-progress"})), 2, {"--json-progress and --preview"});
   // Without the sign, the next argument is not the value.
-  expectError(quintet({"render", "--preview", "a.gltf", "kitty"}), 2, {"unexpected argument 'kitty'"});
+  expectError(quintet({"run", "normals", "--preview", "a.gltf", "kitty"}), 2, {"unexpected argument 'kitty'"});
 }
 
 }  // namespace
