@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/parallel.h"
 #include "base/plural.h"
 #include "farm/part_failure.h"
@@ -105,7 +106,7 @@ PartCheck checkImage(const std::filesystem::path& image, const FrameJson& entry,
 PartCheck checkFrames(const Plan& plan, const std::string& id, std::size_t part, CheckDepth depth) {
   const std::filesystem::path file = partFile(plan, part);
   try {
-    const FrameJson json = FrameJson::parse(readTextFile(file));
+    const FrameJson json = parseJson<FrameJson>(file, readTextFile(file));
     if (json.at("version") != plan.version || json.at("shaderLibrary") != plan.libraryHash)
       return wrongVersion(plan, file, json.at("version").get<std::string>());
     if (json.at("plan") != id) return foreignPlan(file, json.at("plan").get<std::string>(), id);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 
 namespace quintet::farm {
 
@@ -36,7 +37,7 @@ std::optional<PartFailure> readFailure(const Plan& plan, std::size_t part) {
   std::error_code ignored;
   if (!std::filesystem::exists(failureFile(plan, part), ignored)) return std::nullopt;
   try {
-    const nlohmann::json json = nlohmann::json::parse(readTextFile(failureFile(plan, part)));
+    const nlohmann::json json = parseJson(failureFile(plan, part), readTextFile(failureFile(plan, part)));
     return PartFailure{json.at("machine").get<std::string>(), json.at("message").get<std::string>(),
                        json.at("status").get<int>()};
   } catch (const nlohmann::json::exception&) {

@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/plural.h"
 #include "job/version.h"
 #include "render/film/film_file.h"
@@ -121,7 +122,7 @@ Plan readPlan(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::path file = std::filesystem::is_directory(path, ignored) ? path / kPlanFile : path;
   const std::string text = readTextFile(file);
-  PlanJson json = PlanJson::parse(text, nullptr, false);
+  PlanJson json = findJson<PlanJson>(text).value_or(nullptr);
   if (!json.is_object() || json.value("format", PlanJson()) != kFormat)
     throw FileError(file, "is not a plan of 'quintet farm plan'");
   if (json.value("formatVersion", PlanJson()) != kFormatVersion)

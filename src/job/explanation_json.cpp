@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "job/float_json.h"
 
 namespace quintet::job {
@@ -213,7 +214,7 @@ PixelExplanation readExplanation(const std::filesystem::path& file) {
 PixelExplanation parseExplanation(const std::string& text, const std::filesystem::path& file) {
   Json json;
   try {
-    json = Json::parse(text);
+    json = parseJson<Json>(file, text);
   } catch (const Json::parse_error& error) {
     throw FileError(file, fmt::format("byte {}", error.byte), "not valid JSON");
   }

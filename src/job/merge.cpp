@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/plural.h"
 #include "job/film_store.h"
 #include "job/sampling_schedule.h"
@@ -43,7 +44,7 @@ std::string joinLayers(const std::string& a, const std::string& b) {
   Json layers = Json::array();
   try {
     for (const std::string& text : {a, b}) {
-      const Json list = text.empty() ? Json::array() : Json::parse(text);
+      const Json list = text.empty() ? Json::array() : parseJson(text);
       for (const Json& layer : list) {
         const auto isSame = [&](const Json& known) { return known.at("name") == layer.at("name"); };
         if (std::ranges::none_of(layers, isSame)) layers.push_back(layer);

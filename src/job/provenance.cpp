@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/parse.h"
 #include "base/text.h"
 
@@ -96,7 +97,7 @@ bool fromText(mat4& value, const std::string& text) {
 bool fromText(std::vector<std::string>& value, const std::string& text) {
   value.clear();
   if (text.empty()) return true;
-  const nlohmann::json list = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::json list = findJson(text).value_or(nullptr);
   if (!list.is_array() || !std::ranges::all_of(list, [](const auto& name) { return name.is_string(); })) return false;
   value = list.get<std::vector<std::string>>();
   return true;

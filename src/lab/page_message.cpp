@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "job/interactive/command_json.h"
 #include "job/interactive/json_fields.h"
 #include "lab/unsaved_program.h"
@@ -176,7 +177,7 @@ PageCommand parseCommand(const Json& object) {
 }  // namespace
 
 std::variant<PageMessage, PageMessageError> parsePageMessage(std::string_view text) {
-  Json object = Json::parse(text, nullptr, false);
+  Json object = findJson(text).value_or(nullptr);
   if (!object.is_object()) return PageMessageError{"the message is no JSON object", ""};
   std::string id;
   try {
@@ -191,7 +192,7 @@ std::variant<PageMessage, PageMessageError> parsePageMessage(std::string_view te
 }
 
 std::optional<std::string> commandName(std::string_view text) {
-  const Json object = Json::parse(text, nullptr, false);
+  const Json object = findJson(text).value_or(nullptr);
   if (!object.is_object()) return {};
   const auto name = object.find("do");
   if (name == object.end() || !name->is_string()) return {};

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "output/cryptomatte_layer.h"
@@ -180,7 +181,7 @@ std::vector<Layer> parseLayers(const std::string& text, const job::FilmView& fil
   if (text.empty()) return {};
   try {
     std::vector<Layer> layers;
-    for (const nlohmann::json& layer : nlohmann::json::parse(text)) layers.push_back(parseLayer(layer, film));
+    for (const nlohmann::json& layer : parseJson(text)) layers.push_back(parseLayer(layer, film));
     checkChannels(layers);
     return layers;
   } catch (const nlohmann::json::exception&) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 
 namespace quintet::viewer {
 namespace {
@@ -63,7 +64,7 @@ Bookmarks Bookmarks::read(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return result;
   try {
-    const json object = json::parse(readTextFile(file));
+    const json object = parseJson(file, readTextFile(file));
     for (const auto& [scene, list] : object.items())
       for (const json& item : list) result.byScene_[scene].push_back(fromJson(item));
   } catch (const json::exception& failure) {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 
 namespace quintet::viewer {
 namespace {
@@ -59,7 +60,7 @@ std::string settingsJson(const Settings& settings) {
 Settings parseSettings(const std::string& text, const std::string& file) {
   Settings settings;
   try {
-    const json object = json::parse(text);
+    const json object = parseJson(file, text);
     if (!object.is_object()) throw FileError(file, "the file is not a JSON object");
     std::string theme;
     read(object, "theme", theme);

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 
@@ -311,7 +312,7 @@ class GroupsReader {
 std::vector<DescribedPipeline> parseGroups(const std::filesystem::path& file, std::string_view text) {
   Json json;
   try {
-    json = Json::parse(text, nullptr, true, true);  // with comments
+    json = parseJson<Json>(file, text, {.comments = true});
   } catch (const Json::parse_error& error) {
     throw FileError(file, fmt::format("byte {}", error.byte), "this is not valid JSON");
   }

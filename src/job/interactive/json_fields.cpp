@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggestion.h"
 
 namespace quintet::job::interactive {
@@ -38,7 +39,7 @@ std::vector<double> toNumbers(const std::string& name, const json& value) {
 
 JsonFields::JsonFields(std::string_view text) {
   try {
-    object_ = json::parse(text);
+    object_ = parseJson(text);
   } catch (const json::parse_error& error) {
     throw UsageError(fmt::format("byte {}: invalid JSON", error.byte));
   } catch (const json::out_of_range&) {

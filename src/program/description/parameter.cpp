@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/suggestion.h"
 
 namespace quintet::program {
@@ -66,8 +67,6 @@ std::string formatValue(const Parameter& parameter, const ParameterValue& value)
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 24;
-
 // Returns a value as messages show it.
 std::string shown(const Json& value) {
   constexpr std::size_t kLongest = 60, kMostElements = 8;
@@ -101,11 +100,9 @@ std::string pointer(const std::string& key) {
   return text;
 }
 
-Json parseJson(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxJsonBytes)
-    throw FileError(file, fmt::format("too large: {} bytes; the limit is 16 MiB", text.size()));
+Json parseParameters(const std::string& text, const std::string& file) {
   try {
-    return Json::parse(text);
+    return parseJson<Json>(file, text);
   } catch (const nlohmann::json::parse_error& error) {
     throw FileError(file, fmt::format("byte {}", error.byte), "invalid JSON");
   } catch (const nlohmann::json::exception&) {
@@ -270,7 +267,7 @@ std::string ParameterValues::describe() const {
 }
 
 void ParameterValues::setFromJson(const std::string& json, const std::string& file) {
-  const Json root = parseJson(json, file);
+  const Json root = parseParameters(json, file);
   if (!root.is_object()) throw FileError(file, "parameter values must be an object such as {\"tint\": [1, 0.5, 0]}");
   ParameterValues values = *this;
   for (const auto& [name, value] : root.items()) {

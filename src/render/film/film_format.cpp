@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/json.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "io/codec.h"
@@ -79,7 +80,7 @@ class FilmHeaderReader {
  public:
   FilmHeaderReader(const std::filesystem::path& file, std::span<const std::byte> header) : file_(file) {
     const auto* text = reinterpret_cast<const char*>(header.data());
-    json_ = Json::parse(text, text + header.size(), nullptr, false);
+    json_ = findJson<Json>({text, header.size()}).value_or(nullptr);
     if (!json_.is_object()) fail("not a JSON object");
   }
 

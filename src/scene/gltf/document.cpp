@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/file_roots.h"
+#include "base/json.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "scene/gltf/extensions.h"
@@ -167,13 +168,6 @@ bool leavesFolder(const std::filesystem::path& file, const std::string& name) {
 
 // ---- JSON ----
 
-std::string lineAndColumn(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, std::min(byte, text.size()));
-  const auto line = 1 + std::ranges::count(before, '\n');
-  const std::size_t start = before.rfind('\n') + 1;  // npos + 1 = 0
-  return fmt::format("line {}, column {}", line, std::max<std::size_t>(1, before.size() - start));
-}
-
 // The part of nlohmann's message "[json.exception…] parse error at line 1, column 2: syntax error …" after the
 // location.
 std::string withoutLocation(std::string what) {
@@ -186,28 +180,6 @@ std::string withoutLocation(std::string what) {
 
 // Bytes that parsing requires for each byte of JSON: lists of small numbers become 16 bytes per number, twice.
 constexpr std::size_t kJsonMemory = 16;
-
-// Far above what glTF has. Some operations on a JSON value are recursive.
-constexpr int kMaxNesting = 256;
-
-void checkNesting(const std::filesystem::path& file, std::string_view text) {
-  int depth = 0;
-  bool inString = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (inString) {
-      if (c == '\\') ++i;
-      inString = c != '"';
-      continue;
-    }
-    inString = c == '"';
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (depth > kMaxNesting)
-      throw FileError(file, lineAndColumn(text, i + 1),
-                      fmt::format("more than {} nested arrays and objects", kMaxNesting));
-  }
-}
 
 // Replaces numbers beyond the range of double, which the parser rejects, by the largest double. Text in strings stays.
 std::string withoutOverflows(std::string_view text) {
@@ -230,12 +202,13 @@ std::string withoutOverflows(std::string_view text) {
   return result;
 }
 
-json parseJson(const std::filesystem::path& file, std::string_view text) {
+json parseDocument(const std::filesystem::path& file, std::string_view text) {
+  constexpr JsonLimits kLimits{.bytes = std::string_view::npos};  // the budget limits the size
   try {
     try {
-      return json::parse(text);
+      return parseJson(file, text, kLimits);
     } catch (const json::out_of_range&) {
-      return json::parse(withoutOverflows(text));
+      return parseJson(file, withoutOverflows(text), kLimits);
     }
   } catch (const json::parse_error& error) {
     throw FileError(file, lineAndColumn(text, error.byte), "invalid JSON: " + printable(withoutLocation(error.what())));
@@ -439,8 +412,7 @@ Document readDocument(const std::filesystem::path& file, bool allowExternal, std
   const FileBytes& bytes = document.storage.emplace_back(readLargeFile(file, *document.budget));
   const Container container = splitContainer(file, bytes);
   document.budget->take(kJsonMemory * container.json.size());
-  checkNesting(file, container.json);
-  json root = parseJson(file, container.json);
+  json root = parseDocument(file, container.json);
   CheckedSchema schema = checkSchema(file, root);
   json& checked = schema.json;
   document.unread = std::move(schema.unread);

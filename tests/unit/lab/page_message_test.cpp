@@ -97,6 +97,16 @@ TEST(PageMessage, RejectsWhatIsNoObject) {
   errorOf("{\"do\":\"open\",\"program\":\"\xFF\"}");
 }
 
+// Copying and printing such a value would overflow the stack: of the server, too, which reads the name of the command.
+TEST(PageMessage, RejectsDeepMessages) {
+  for (const std::size_t levels : {std::size_t{1000}, std::size_t{200'000}}) {
+    const std::string value = std::string(levels, '[') + std::string(levels, ']');
+    const std::string message = R"({"do":"open","program":"a","parameters":{"x":)" + value + "}}";
+    EXPECT_FALSE(commandName(message));
+    EXPECT_EQ(errorOf(message).message, "the message is no JSON object");
+  }
+}
+
 TEST(PageMessage, ReadsValuesOfBlocks) {
   const auto one = std::get<ReadValue>(parsed(R"({"do":"value","x":3,"y":4})").command);
   EXPECT_EQ(one.pixel, uvec2(3, 4));
