@@ -14,6 +14,8 @@ namespace {
 
 constexpr const char* kRootsVariable = "QUINTET_INCLUDE_ROOTS";
 
+bool isHidden(const std::filesystem::path& part) { return part.native().starts_with('.'); }
+
 }  // namespace
 
 FileRoots FileRoots::fromEnvironment() {
@@ -32,7 +34,8 @@ bool FileRoots::allows(const std::filesystem::path& file) const {
   const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
   if (error) return false;
   return std::ranges::any_of(folders_, [&](const std::filesystem::path& folder) {
-    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+    const auto [end, below] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+    return end == folder.end() && std::none_of(below, path.end(), isHidden);
   });
 }
 

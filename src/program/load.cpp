@@ -32,13 +32,16 @@ constexpr std::uintmax_t kMaxImageBytes = std::uintmax_t{1} << 26;
 constexpr std::size_t kMaxIncludes = 64;
 constexpr std::string_view kDescription = "program.toml";
 
+// Editors and version control keep files of their own beside a program.
+bool isHidden(const fs::directory_entry& entry) { return entry.path().filename().native().starts_with('.'); }
+
 // ---- folders with program.toml ----
 
 Program loadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
   const auto roots = FileRoots::fromEnvironment();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.file_size() <= kMaxFileBytes && roots.allows(entry.path()))
+    if (!isHidden(entry) && entry.is_regular_file() && entry.file_size() <= kMaxFileBytes && roots.allows(entry.path()))
       files[entry.path().filename().string()] = readTextFile(entry.path());
   const auto toml = files.find(std::string(kDescription));
   if (toml == files.end()) throw FileError(folder, "contains no program.toml");

@@ -167,6 +167,24 @@ TEST(Include, StaysInTheRootsOfTheEnvironment) {
   }
 }
 
+// A project can be a home folder, and the message of the compiler shows the line of a file that is no GLSL.
+TEST(Include, HiddenFilesAreNotRead) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "project/.ssh");
+  folder.write("project/.ssh/key", "password\n");
+  folder.write("project/.env", "password\n");
+  std::filesystem::create_symlink(".env", folder.path() / "project/link.glsl");
+  addFileRoot(folder.path() / "project");
+  for (const char* include : {".ssh/key", ".env", "./.env", "../project/.env", "link.glsl"}) {
+    const Result result = Compiler({}).compile(computeSource(std::string("#include \"") + include + "\"", "b.x = 1;",
+                                                             (folder.path() / "project/main.comp").string()));
+    EXPECT_FALSE(result.ok()) << include;
+    for (const Diagnostic& diagnostic : result.diagnostics)
+      EXPECT_EQ(diagnostic.format().find("password"), std::string::npos) << diagnostic.format();
+  }
+  ::unsetenv("QUINTET_INCLUDE_ROOTS");
+}
+
 TEST(Include, ReportsIncludeCycles) {
   Source source = computeSource("#include <a.glsl>");
   source.virtualFiles["a.glsl"] = "#include <b.glsl>\n";
