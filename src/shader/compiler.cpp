@@ -24,6 +24,7 @@
 #include "shader/deep_stack.h"
 #include "shader/include_resolver.h"
 #include "shader/library.h"
+#include "shader/macro_expansion.h"
 #include "shader/optimizer.h"
 #include "shader/spirv_cache.h"
 #include "shader/stage_builtins.h"
@@ -40,6 +41,7 @@ constexpr std::size_t kMaxTextBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxFiles = 4096;
 constexpr std::size_t kMaxIncludeDepth = 64;
 constexpr std::size_t kMaxIncludes = 4096;  // two includes in each of 30 files would make 2^30
+constexpr std::size_t kMaxIncludedBytes = std::size_t{64} << 20;
 
 // The files that a compilation can read, found without the preprocessor: a superset of those that it reads.
 struct Inputs {
@@ -204,6 +206,7 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
     chain_.push_back(from->name);
     if (depth > kMaxIncludeDepth) return fail(answer, tooDeep(include));
     if (run_.includes.size() >= kMaxIncludes) return fail(answer, "more than 4096 includes");
+    if (bytes_ > kMaxIncludedBytes) return fail(answer, "more than 64 MiB of included text (add include guards)");
     const SourceFile* file = files_.resolve(*from, include);
     if (!file) {
       if (!include.quoted) noteMissing(*from, include);  // a quoted name is requested again, as <x>
@@ -211,6 +214,7 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
       return fail(answer, "file not found");
     }
     run_.includes.emplace_back(from->name, file->name);
+    bytes_ += file->text.size();
     answer.name = file->name;
     answer.text = file->text;
   }
@@ -237,6 +241,7 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
 
   IncludeResolver& files_;
   GlslangRun& run_;
+  std::size_t bytes_ = 0;           // of all included texts
   std::vector<std::string> chain_;  // names of the open files, outermost first
   std::string missedQuoted_;
 };
@@ -254,9 +259,30 @@ shaderc::CompileOptions optionsFor(const Source& source, const CompilerOptions& 
   return result;
 }
 
+// An error for macros that would take all memory of the machine.
+std::optional<Diagnostic> findLargeMacro(const Source& source, const IncludeResolver& files) {
+  std::vector<MacroText> texts;
+  for (const SourceFile* file : files.files()) texts.push_back({file->name, file->text});
+  const std::optional<LargeExpansion> large = findLargeExpansion(texts, source.defines);
+  if (!large) return {};
+  return Diagnostic{
+      .severity = Severity::error,
+      .file = large->file,
+      .line = large->line,
+      .column = 0,
+      .id = "GLSL",
+      .text = fmt::format("the macro '{}' expands to too much text: the compiler would need more than {} MB "
+                          "for more than {} million tokens; use functions and loops",
+                          large->macro, kMaxTokens * kTokenBytes / 1e6, kMaxTokens / 1e6)};
+}
+
 GlslangRun runGlslang(const shaderc::Compiler& compiler, const Source& source, const CompilerOptions& options,
                       IncludeResolver& files) {
   GlslangRun run;
+  if (std::optional<Diagnostic> large = findLargeMacro(source, files)) {
+    run.diagnostics.push_back(std::move(*large));
+    return run;
+  }
   shaderc::CompileOptions glslangOptions = optionsFor(source, options);
   glslangOptions.SetIncluder(std::make_unique<Includer>(files, run));
   const shaderc::SpvCompilationResult result = compiler.CompileGlslToSpv(
