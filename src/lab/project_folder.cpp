@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/file.h"
+#include "base/file_roots.h"
 #include "base/hash.h"
 #include "base/text.h"
 
@@ -23,6 +26,11 @@ constexpr int kMaxDepth = 8;                            // of listed folders
 bool isInside(const fs::path& path, const fs::path& folder) {
   const auto [end, ignored] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return end == folder.end();
+}
+
+// Links to hidden files lead as far as links to files outside: nowhere.
+bool isVisible(const fs::path& path, const fs::path& folder) {
+  return path == folder || (isInside(path, folder) && isFileName(path.lexically_relative(folder).generic_string()));
 }
 
 double secondsSince1970(fs::file_time_type time) {
@@ -44,11 +52,31 @@ bool isFileName(std::string_view name) {
 
 std::string contentHash(std::string_view content) { return Hasher().add(content).finish().hex(); }
 
-ProjectFolder::ProjectFolder(const fs::path& folder) {
+ProjectFolder::ProjectFolder(const fs::path& folder, const std::vector<std::string>& files)
+    : files_(files.begin(), files.end()) {
   std::error_code error;
   root_ = fs::canonical(folder, error);
   if (error) throw FileError(folder, error.message());
   if (!fs::is_directory(root_)) throw FileError(folder, "is not a folder");
+}
+
+void ProjectFolder::addRoots() {
+  hasRoots_ = true;
+  if (hasAllFiles()) addFileRoot(root_);
+  for (const std::string& name : files_) addFileRoot(fs::weakly_canonical(root_ / name));
+}
+
+bool ProjectFolder::hasHomeFolder() const {
+  const char* home = std::getenv("HOME");
+  std::error_code error;
+  return home && *home && isInside(fs::weakly_canonical(home, error), root_);
+}
+
+std::string ProjectFolder::description() const {
+  if (hasAllFiles()) return fmt::format("project folder: {}", root_.string());
+  return fmt::format("project folder: {}, of which only {} accessible: {}", root_.string(),
+                     files_.size() == 1 ? "this file is" : fmt::format("these {} files are", files_.size()),
+                     fmt::join(files_, ", "));
 }
 
 fs::path ProjectFolder::locate(const std::string& name) const {
@@ -59,9 +87,21 @@ fs::path ProjectFolder::locate(const std::string& name) const {
   if (error) throw FileError(name, error.message());
   // What a link names that does not exist could be created there.
   const bool broken = fs::is_symlink(fs::symlink_status(path, error)) && !fs::exists(path, error);
-  if (!isInside(resolved, root_) || broken)
+  if (!isVisible(resolved, root_) || broken)
     throw NameError(fmt::format("'{}' leads out of the project", printable(name)));
+  if (fs::exists(path, error) && !belongs(name))
+    throw NameError(
+        fmt::format("'{}' exists, but does not belong to the project, which is a file and what it names; to use all "
+                    "files of the folder, start the lab with the folder",
+                    printable(name)));
   return path;
+}
+
+// A folder belongs to the project if one of its files does.
+bool ProjectFolder::belongs(const std::string& name) const {
+  if (hasAllFiles() || files_.contains(name)) return true;
+  const auto below = files_.lower_bound(name + "/");
+  return below != files_.end() && below->starts_with(name + "/");
 }
 
 std::optional<std::string> ProjectFolder::nameOf(const fs::path& path) const {
@@ -85,8 +125,8 @@ ProjectFolder::Listing ProjectFolder::list() const {
       if (isFolder) at.disable_recursion_pending();
       continue;
     }
-    if (isFolder || !at->is_regular_file(ignored)) continue;
-    if (at->is_symlink(ignored) && !isInside(fs::weakly_canonical(at->path(), ignored), root_)) continue;
+    if (isFolder || !at->is_regular_file(ignored) || !belongs(name)) continue;
+    if (at->is_symlink(ignored) && !isVisible(fs::weakly_canonical(at->path(), ignored), root_)) continue;
     if (listing.files.size() == kMaxListedFiles) {
       listing.truncated = true;
       break;
@@ -129,6 +169,7 @@ ProjectFolder::Written ProjectFolder::write(const std::string& name, std::string
     fs::create_directories(path.parent_path(), error);
     if (error) throw FileError(name, "cannot create the folder: " + error.message());
     writeFile(path, content);
+    if (!hasAllFiles() && files_.insert(name).second && hasRoots_) addFileRoot(path);
   }
   return {contentHash(content), !before};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a page can read and write: those of one folder. Names are relative paths without tricks, and symbolic
-// links are followed only if they stay in the folder. Writing names the version that it replaces, so that nothing that
+// The files that a page can read and write: those of one folder, or some of them. Names are relative paths without tricks, and
+// symbolic links are followed only if they stay in the folder. Writing names the version that it replaces, so that nothing that
 // an editor or a second page has saved is lost.
 #ifndef QUINTET_LAB_PROJECT_FOLDER_H
 #define QUINTET_LAB_PROJECT_FOLDER_H
@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,12 +45,23 @@ class ConflictError : public Error {
 
 class ProjectFolder {
  public:
-  // Throws FileError if the folder does not exist.
-  explicit ProjectFolder(const std::filesystem::path& folder);
+  // `files`: names of the files that belong to the project; empty means all of the folder. Files that are written later belong
+  // to it, too. Throws FileError if the folder does not exist.
+  explicit ProjectFolder(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
 
   const std::filesystem::path& root() const { return root_; }  // absolute, without symbolic links
 
-  // The path of a file or folder that need not exist. Throws NameError.
+  // Limits what programs and scenes can read, in this process and its children, to the files of the project (base/file_roots.h).
+  // write() adds its files. Not while other threads read the environment.
+  void addRoots();
+  bool hasHomeFolder() const;
+  std::string description() const;  // one line: where it is, and what belongs to it
+
+  bool hasAllFiles() const { return files_.empty(); }
+  const std::set<std::string>& files() const { return files_; }  // that belong to it; empty means all
+
+  // The path of a file or folder that need not exist. Throws NameError; also for a file that exists and does not belong to
+  // the project.
   std::filesystem::path locate(const std::string& name) const;
   // The name of a path in the folder, else nothing.
   std::optional<std::string> nameOf(const std::filesystem::path& path) const;
@@ -82,8 +94,11 @@ class ProjectFolder {
  private:
   std::optional<std::string> find(const std::filesystem::path& path) const;
   void require(const std::string& name, const std::optional<std::string>& content, const Condition& condition) const;
+  bool belongs(const std::string& name) const;
 
   std::filesystem::path root_;
+  mutable std::set<std::string> files_;  // grows with what is written
+  bool hasRoots_ = false;
 };
 
 }  // namespace quintet::lab

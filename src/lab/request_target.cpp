@@ -34,6 +34,8 @@ std::optional<std::string> decode(std::string_view text, bool isQuery) {
 
 }  // namespace
 
+std::optional<std::string> decodePercent(std::string_view text) { return decode(text, false); }
+
 std::optional<RequestTarget> parseTarget(std::string_view target) {
   if (!target.starts_with('/')) return {};
   RequestTarget result;

@@ -10,6 +10,9 @@
 
 namespace quintet::lab {
 
+// "a%20b" → "a b"; nothing for incomplete or wrong escapes, and for encoded zero bytes.
+std::optional<std::string> decodePercent(std::string_view text);
+
 struct RequestTarget {
   std::string path;                          // "/api/files/a b"
   std::map<std::string, std::string> query;  // of repeated names the last value

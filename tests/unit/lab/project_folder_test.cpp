@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -32,6 +33,45 @@ class ProjectFolderTest : public ::testing::Test {
   const test::TempFolder folder_;
   std::optional<ProjectFolder> project_;
 };
+
+TEST_F(ProjectFolderTest, FollowsNoLinksToHiddenFiles) {
+  fs::create_directories(path(".git"));
+  writeFile(path(".git/config"), "password");
+  fs::create_symlink(".git/config", path("config"));
+  fs::create_directory_symlink(".git", path("git"));
+  fs::create_symlink("a.glsl", path("b.glsl"));
+  EXPECT_THROW(project_->read("config"), NameError);
+  EXPECT_THROW(project_->read("git/config"), NameError);
+  EXPECT_EQ(project_->read("b.glsl"), "old");
+  EXPECT_THAT(
+      project_->list().files,
+      ::testing::Each(::testing::Field(&ProjectFolder::Entry::name, ::testing::Not(::testing::HasSubstr("config")))));
+}
+
+TEST_F(ProjectFolderTest, CanHaveSomeFilesOfItsFolder) {
+  fs::create_directories(path("lib"));
+  writeFile(path("lib/x.glsl"), "x");
+  writeFile(path("lib/y.glsl"), "y");
+  writeFile(path("private.txt"), "private");
+  const ProjectFolder project(folder_.path() / "project", {"a.glsl", "lib/x.glsl"});
+  const auto names = [&] {
+    std::vector<std::string> names;
+    for (const ProjectFolder::Entry& entry : project.list().files) names.push_back(entry.name);
+    return names;
+  };
+  EXPECT_THAT(names(), ::testing::ElementsAre("a.glsl", "lib/x.glsl"));
+  EXPECT_EQ(project.read("lib/x.glsl"), "x");
+  EXPECT_NO_THROW(project.locate("lib"));
+  for (const char* name : {"private.txt", "lib/y.glsl", "sub"}) {
+    EXPECT_THROW(project.read(name), NameError) << name;
+    EXPECT_THROW(project.write(name, "x", {}), NameError) << name;
+    EXPECT_THROW(project.remove(name, {}), NameError) << name;
+  }
+  project.write("new/b.glsl", "b", {.mustNotExist = true});
+  EXPECT_EQ(project.read("new/b.glsl"), "b");
+  EXPECT_THAT(names(), ::testing::ElementsAre("a.glsl", "lib/x.glsl", "new/b.glsl"));
+  EXPECT_EQ(project.files().size(), 3u);
+}
 
 TEST_F(ProjectFolderTest, AcceptsPlainNames) {
   for (const char* name : {"a", "a.glsl", "sub/a b.toml", "größe/ä.png", "a..b/c...d"})

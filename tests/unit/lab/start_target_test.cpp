@@ -13,6 +13,8 @@ namespace quintet::lab {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 constexpr const char* kLecture = "void main() { /**** RAY GENERATION SHADER ****/ }\n";
 
@@ -29,7 +31,7 @@ TEST(StartTarget, ShowsABuiltInProgramByAnyOfItsNames) {
   EXPECT_THROW(chooseStart("shadw"), UsageError);
 }
 
-TEST(StartTarget, TheProjectIsTheFolderOfAFile) {
+TEST(StartTarget, AFileGivesAccessToWhatItNames) {
   const test::TempFolder folder;
   writeFile(folder / "a.rt.glsl", kLecture);
   writeFile(folder / "b.rt.glsl", kLecture);
@@ -39,11 +41,13 @@ TEST(StartTarget, TheProjectIsTheFolderOfAFile) {
     EXPECT_EQ(target.folder, folder.path());
     EXPECT_EQ(target.program, "b.rt.glsl");
     EXPECT_EQ(target.scene, "");
+    EXPECT_THAT(target.files, ElementsAre("b.rt.glsl"));
   }
   const StartTarget scene = chooseStart((folder / "fox.glb").string());
   EXPECT_EQ(scene.folder, folder.path());
   EXPECT_EQ(scene.program, "<programs/pathtracer>");
   EXPECT_EQ(scene.scene, "fox.glb");
+  EXPECT_THAT(scene.files, ElementsAre("fox.glb"));
   EXPECT_THROW(chooseStart((folder / "none.glb").string()), FileError);
 }
 
@@ -55,6 +59,8 @@ TEST(StartTarget, AFolderIsTheProject) {
   EXPECT_EQ(chooseStart(folder.path().string()).program, "z/inner");
   writeFile(folder / "program.toml", "");
   EXPECT_EQ(chooseStart(folder.path().string()).program, "program.toml");
+  EXPECT_THAT(chooseStart(folder.path().string()).files, IsEmpty()) << "all";
+  EXPECT_THAT(chooseStart((folder / "program.toml").string()).files, IsEmpty());
 }
 
 }  // namespace
