@@ -18,6 +18,7 @@
 #include "base/diagnostic.h"
 #include "base/embedded.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "check/catalog.h"
 #include "check/diagnostic_text.h"
 #include "lab/course.h"
@@ -235,9 +236,10 @@ HttpResponse Api::file(const HttpRequest& request, const std::string& name) cons
   if (request.method != "GET") throw MethodError{"GET, PUT, DELETE"};
   std::string content = project_.read(name);
   const std::string tag = fmt::format("\"{}\"", contentHash(content));
-  HttpResponse response{.type = std::string(contentType(name)),
-                        .body = std::move(content),
-                        .headers = {{"ETag", tag}, {"Cache-Control", "no-cache"}}};
+  HttpResponse response{
+      .type = std::string(contentType(name)),
+      .body = std::move(content),
+      .headers = {{"ETag", tag}, {"Cache-Control", "no-cache"}, {"Content-Disposition", "attachment"}}};
   if (response.type.starts_with("text/html")) response.type = kText;  // nothing of the project is a page
   if (request.header("if-none-match") == tag) {
     response.status = 304;
@@ -286,7 +288,7 @@ HttpResponse Api::program(const std::string& name) const {
 }
 
 HttpResponse Api::copyProgram(const std::string& body) const {
-  const nlohmann::json request = nlohmann::json::parse(body);
+  const nlohmann::json request = parseJson(body);
   const std::string from = request.at("from"), to = request.at("to");
   const bool replace = request.value("replace", false);
   const std::vector<std::string> written = writeFiles(project_, to, copiedFiles(project_, from), replace);

@@ -16,7 +16,8 @@ namespace quintet::lab {
 // By the extension: "text/javascript; charset=utf-8". Unknown ones are bytes.
 std::string_view contentType(std::string_view name);
 
-// Adds the headers of all answers: Content-Security-Policy and others. `host`: as the request states it.
+// Adds the headers of all answers: Content-Security-Policy and others. `host`: as the request states it. `nonce`: of the page;
+// empty for data, which never run as a page, even if a browser opens their URL.
 void addSecurityHeaders(HttpResponse& response, const std::string& host, const std::string& nonce);
 
 class Page {
