@@ -19,7 +19,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/file_roots.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "cli/command.h"
@@ -28,6 +27,7 @@
 #include "cli/lab_options.h"
 #include "gpu/instance.h"
 #include "lab/private_folder.h"
+#include "lab/sandbox.h"
 #include "lab/server.h"
 #include "lab/start_target.h"
 #include "lab/worker.h"
@@ -79,13 +79,15 @@ int serve(const cli::LabOptions& request) {
   std::error_code error;
   fs::create_directories(target.folder, error);
   if (error) throw FileError(target.folder, "cannot create the folder: " + error.message());
-  const ProjectFolder project(target.folder);
-  addFileRoot(project.root());  // of the workers, too
+  ProjectFolder project(target.folder, target.files);
+  project.addRoots();  // of the workers, too
   removeAbandonedFolders();
   ServerOptions options;
   options.address = request.bind;
   options.device = request.device;
   options.idleSeconds = request.idle;
+  options.contained = !request.noSandbox;
+  options.memory = request.maxMemory ? request.maxMemory : machineMemory() / 2;
   options.worker = fs::read_symlink("/proc/self/exe");
   options.page = embeddedPage();
   options.defaults = {.program = target.program,
@@ -96,8 +98,16 @@ int serve(const cli::LabOptions& request) {
                       .maxSessions = request.sessions};
   Server server = makeServer(project, std::move(options), request);
   writeFile("-", server.url() + "\n");
-  cli::printMessage(fmt::format("project folder: {}; press Ctrl-C to stop", printable(project.root().string())));
-  if (!request.noOpen) openBrowser(server.url());
+  cli::printMessage(fmt::format("{}; press Ctrl-C to stop", printable(project.description())));
+  for (const std::string& warning :
+       {server.exposure(),
+        request.noSandbox ? "shaders are not contained (--no-sandbox)" : sandboxGaps(sandboxSupport()),
+        project.hasHomeFolder()
+            ? "the project contains your home folder: a shader that takes over the process of its page "
+              "can read all your files; use a folder of its own"
+            : ""})
+    if (!warning.empty()) cli::printMessage("warning: " + warning);
+  if (!request.noOpen) openBrowser(server.urlForBrowser());
   server.run();
   return 0;
 }

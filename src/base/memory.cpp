@@ -29,6 +29,12 @@ std::uint64_t statusBytes(std::string_view key) {
 
 }  // namespace
 
+std::uint64_t machineMemory() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
+  constexpr std::uint64_t kUnknown = std::uint64_t{1} << 46;
+  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size) : kUnknown;
+}
+
 std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
 std::uint64_t peakResidentBytes() { return statusBytes("VmHWM:"); }
 

@@ -9,6 +9,8 @@
 
 namespace quintet {
 
+// Returns the bytes of physical memory of the machine; 2^46 if unknown.
+std::uint64_t machineMemory();
 // Returns the bytes in physical memory, including the pages of mapped files; 0 if unknown.
 std::uint64_t residentBytes();
 // Returns the maximum of residentBytes() since the process started.

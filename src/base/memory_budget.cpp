@@ -2,20 +2,11 @@
 #include "base/memory_budget.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 
 namespace quintet {
-namespace {
-
-std::size_t machineMemory() {
-  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-  constexpr std::size_t kUnknown = std::size_t{1} << 46;
-  return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size) : kUnknown;
-}
-
-}  // namespace
 
 MemoryBudget::MemoryBudget(const std::filesystem::path& file, std::size_t limit, Remedy remedy)
     : file_(file), limit_(limit ? limit : machineMemory() / 5 * 4), remedy_(remedy) {}

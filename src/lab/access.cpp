@@ -93,7 +93,21 @@ bool Access::hasToken(const HttpRequest& request) const {
   return areEqual(cookieValue(request.header("cookie"), cookie_), token_);
 }
 
-std::optional<HttpResponse> Access::check(const HttpRequest& request) const {
+std::string Access::issueTicket(double now) {
+  ticket_ = randomToken();
+  ticketEnd_ = now + kTicketSeconds;
+  return ticket_;
+}
+
+HttpResponse Access::login() const {
+  return {.status = 303,
+          .type = "text/plain; charset=utf-8",
+          .body = "",
+          .headers = {{"Location", "/"},
+                      {"Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", cookie_, token_)}}};
+}
+
+std::optional<HttpResponse> Access::check(const HttpRequest& request, const Caller& caller) {
   const std::string& host = request.header("host");
   if (!isKnownHost(host))
     return errorResponse(421,
@@ -108,13 +122,14 @@ std::optional<HttpResponse> Access::check(const HttpRequest& request) const {
   if (!opensPage && !site.empty() && site != "same-origin" && site != "none")
     return errorResponse(403, "requests of other sites are not allowed");
   const auto token = target->query.find("token");
-  if (opensPage && token != target->query.end() && areEqual(token->second, token_))
-    return HttpResponse{
-        .status = 303,
-        .type = "text/plain; charset=utf-8",
-        .body = "",
-        .headers = {{"Location", "/"},
-                    {"Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", cookie_, token_)}}};
+  if (opensPage && token != target->query.end() && areEqual(token->second, token_)) return login();
+  const auto ticket = target->query.find("ticket");
+  if (opensPage && ticket != target->query.end() && !hasToken(request)) {
+    if (ticket_.empty() || caller.now > ticketEnd_ || !areEqual(ticket->second, ticket_) || !caller.isOwnUser())
+      return errorResponse(403, "this URL was valid once and for a minute; open the URL that 'quintet lab' printed");
+    ticket_.clear();
+    return login();
+  }
   if (!hasToken(request))
     return errorResponse(403, "the token of the URL is missing or wrong; open the URL that 'quintet lab' printed");
   return {};

@@ -24,7 +24,7 @@ struct ChannelFrame {
   std::string data;
 };
 
-inline constexpr std::size_t kMaxFrameBytes = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxFrameBytes = std::size_t{64} << 20;
 
 std::string frameBytes(FrameKind kind, std::string_view data);
 

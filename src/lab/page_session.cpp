@@ -23,8 +23,9 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-constexpr std::chrono::milliseconds kTick{500}, kEndPoll{5};
+constexpr std::chrono::milliseconds kTick{250}, kEndPoll{5};
 constexpr std::size_t kMaxWaitingBytes = std::size_t{64} << 20;  // of messages that a page does not read
+constexpr std::size_t kMaxWorkerBytes = std::size_t{8} << 20;    // of messages that a worker does not read
 
 }  // namespace
 
@@ -79,13 +80,19 @@ void PageSession::readPage() {
   });
 }
 
-void PageSession::handlePage(const std::string& message) { perform(supervisor_.pageSent(clock_.seconds(), message)); }
+void PageSession::handlePage(const std::string& message) {
+  // A worker can read only the files that the project had when it started.
+  if (worker_ && worker_->files != options_.project->files().size())
+    perform(supervisor_.pageSent(clock_.seconds(), R"({"do":"restart"})"));
+  perform(supervisor_.pageSent(clock_.seconds(), message));
+}
 
 void PageSession::toPage(Message message) {
   if (closing_ || closed_) return;
   waitingBytes_ += message.data.size();
   waiting_.push_back(std::move(message));
-  if (waitingBytes_ > kMaxWaitingBytes) return close(websocket::close_code::policy_error);
+  if (waitingBytes_ > kMaxWaitingBytes)
+    return close(websocket::close_code::policy_error, "the page does not read its messages");
   if (waiting_.size() == 1) writePage();
 }
 
@@ -103,10 +110,10 @@ void PageSession::writePage() {
       });
 }
 
-void PageSession::close(websocket::close_code code) {
+void PageSession::close(websocket::close_code code, std::string_view reason) {
   if (closing_ || closed_) return;
   closing_ = true;
-  reason_ = code;
+  reason_ = websocket::close_reason(code, beast::string_view(reason.data(), reason.size()));
   endWorker(true);
   if (waiting_.empty())
     return page_.async_close(reason_, [self = shared_from_this()](const error_code& /*error*/) { self->pageClosed(); });
@@ -132,12 +139,17 @@ void PageSession::perform(const SessionSupervisor::Actions& actions) {
 
 void PageSession::startWorker() {
   try {
-    worker_ = std::make_shared<Worker>(page_.get_executor(), startWorkerProcess(options_.worker));
+    worker_ = std::make_shared<Worker>(page_.get_executor(),
+                                       startWorkerProcess(options_.worker, options_.settings.contained));
   } catch (const std::exception& error) {
     perform(supervisor_.workerMissing(error.what()));
     return;
   }
-  toWorker(FrameKind::control, settingsJson(options_.settings));
+  WorkerSettings settings = options_.settings;
+  settings.files.assign(options_.project->files().begin(), options_.project->files().end());
+  worker_->files = settings.files.size();
+  settings.process = worker_->process;
+  toWorker(FrameKind::control, settingsJson(settings));
   readWorker(worker_);
 }
 
@@ -181,6 +193,9 @@ void PageSession::handleWorker(Worker& worker, const ChannelFrame& frame) {
 void PageSession::toWorker(FrameKind kind, const std::string& data) {
   if (!worker_) return;
   worker_->waiting.push_back(frameBytes(kind, data));
+  worker_->waitingBytes += worker_->waiting.back().size();
+  if (worker_->waitingBytes > kMaxWorkerBytes)
+    return close(websocket::close_code::policy_error, "the page sends more messages than its worker can read");
   if (worker_->waiting.size() == 1) writeWorker(worker_);
 }
 
@@ -188,6 +203,7 @@ void PageSession::writeWorker(const std::shared_ptr<Worker>& worker) {
   asio::async_write(worker->socket, asio::buffer(worker->waiting.front()),
                     [self = shared_from_this(), worker](const error_code& error, std::size_t /*size*/) {
                       if (error) return;  // the reader notices the end, too
+                      worker->waitingBytes -= worker->waiting.front().size();
                       worker->waiting.pop_front();
                       if (!worker->waiting.empty()) self->writeWorker(worker);
                     });
@@ -209,11 +225,18 @@ void PageSession::waitForEnd(const std::shared_ptr<Worker>& worker) {
   perform(supervisor_.workerEnded(clock_.seconds(), *end));
 }
 
+// Beside the limit of the kernel, which is that of allocated memory, and less exact.
+void PageSession::checkMemory() {
+  const std::uint64_t limit = options_.settings.memory;
+  if (worker_ && limit > 0 && workerMemory(worker_->process) > limit) perform(supervisor_.workerExceeded(limit));
+}
+
 void PageSession::tick() {
   timer_.expires_after(kTick);
   timer_.async_wait([self = shared_from_this()](const error_code& error) {
     if (error || self->closed_) return;
     self->perform(self->supervisor_.tick(self->clock_.seconds()));
+    self->checkMemory();
     self->tick();
   });
 }

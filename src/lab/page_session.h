@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -30,6 +31,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   struct Options {
     std::filesystem::path worker;  // executable
     WorkerSettings settings;
+    const ProjectFolder* project = nullptr;  // of `settings`; its files can become more
     double idleSeconds = 600;
     bool accepted = true;         // false: too many sessions are open
     std::function<void()> onEnd;  // called once, after the WebSocket is closed and the worker has ended
@@ -52,7 +54,9 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
     FrameParser parser;
     std::array<char, 65536> buffer{};
     std::deque<std::string> waiting;
+    std::size_t waitingBytes = 0;
     std::optional<std::string> hung;
+    std::size_t files = 0;  // that the project had when the worker started
     bool replaced = false;  // its end is of no interest
   };
   struct Message {
@@ -64,7 +68,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   void handlePage(const std::string& message);
   void toPage(Message message);
   void writePage();
-  void close(boost::beast::websocket::close_code code);
+  void close(boost::beast::websocket::close_code code, std::string_view reason = {});
   void pageClosed();
 
   void perform(const SessionSupervisor::Actions& actions);
@@ -75,6 +79,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   void toWorker(FrameKind kind, const std::string& data);
   void writeWorker(const std::shared_ptr<Worker>& worker);
   void waitForEnd(const std::shared_ptr<Worker>& worker);
+  void checkMemory();
   void tick();
 
   const Options options_;

@@ -50,8 +50,8 @@ void removeFolders(const std::function<bool(pid_t)>& ofProcess) {
 
 }  // namespace
 
-PrivateFolder::PrivateFolder() {
-  std::string name = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", kPrefix, ::getpid())).string();
+PrivateFolder::PrivateFolder(pid_t process) {
+  std::string name = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", kPrefix, process)).string();
   if (!mkdtemp(name.data())) throw FileError(name, std::generic_category().message(errno));
   path_ = fs::canonical(name);
 }

@@ -13,7 +13,8 @@ namespace quintet::lab {
 
 class PrivateFolder {
  public:
-  PrivateFolder();  // of this process. Throws FileError
+  // `process`: that the folder belongs to, as other processes see it. Throws FileError.
+  explicit PrivateFolder(pid_t process);
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
   PrivateFolder& operator=(const PrivateFolder&) = delete;

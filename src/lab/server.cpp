@@ -3,8 +3,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <list>
 #include <memory>
 #include <optional>
 #include <set>
@@ -19,9 +21,11 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "lab/access.h"
 #include "lab/page.h"
 #include "lab/page_session.h"
+#include "lab/peer.h"
 #include "lab/request_target.h"
 
 namespace quintet::lab {
@@ -33,11 +37,14 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::uint32_t kMaxHeader = 16 * 1024;      // bytes
-constexpr std::chrono::seconds kRequestTime{30};     // for a request, and between two
-constexpr std::chrono::milliseconds kAnswerPoll{5};  // between looks at a process that makes an answer
-constexpr std::chrono::seconds kStopTime{2};         // for the goodbye to the pages
-constexpr std::size_t kMaxConnections = 256;
+constexpr std::uint32_t kMaxHeader = 16 * 1024;        // bytes
+constexpr std::chrono::seconds kFirstHeaderTime{5};    // for the first header of a connection
+constexpr std::chrono::seconds kRequestTime{30};       // for a request, and between two
+constexpr std::chrono::milliseconds kAnswerPoll{5};    // between looks at a process that makes an answer
+constexpr std::chrono::seconds kStopTime{2};           // for the goodbye to the pages
+constexpr std::chrono::milliseconds kAcceptPause{50};  // after an error, such as too many open files
+// Without those of sessions. A browser opens at most six to one address.
+constexpr std::size_t kMaxConnections = 256, kMaxConnectionsPerAddress = 64;
 
 std::string machineName() {
   std::array<char, 256> name{};
@@ -58,29 +65,45 @@ HttpRequest toRequest(const http::header<true, Fields>& header) {
   return request;
 }
 
+class Connection;
+
 // What connections share.
 struct Site {
-  const Access access;
+  Access access;
   const Page page;
   const Api api;
   const ServerOptions& options;
-  std::string folder;
+  const ProjectFolder& project;
   std::set<PageSession*> sessions;
-  std::size_t connections = 0;
+  std::list<Connection*> connections;  // that serve requests, the oldest first
+  Stopwatch clock;
 };
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, Site& site) : stream_(std::move(socket)), site_(site) { ++site_.connections; }
-  ~Connection() { --site_.connections; }
+  Connection(tcp::socket socket, Site& site) : stream_(std::move(socket)), site_(site) {
+    error_code ignored;
+    peer_ = stream_.socket().remote_endpoint(ignored);
+    site_.connections.push_back(this);
+  }
+  ~Connection() { leaveSite(); }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
+
+  asio::ip::address address() const { return peer_.address(); }
+  bool isTrusted() const { return trusted_; }  // it has sent a request with the token
+
+  // It no longer counts, and its operations end.
+  void close() {
+    leaveSite();
+    stream_.close();
+  }
 
   void read() {
     parser_.emplace();
     parser_->header_limit(kMaxHeader);
     parser_->body_limit(kMaxUploadBytes);
-    stream_.expires_after(kRequestTime);
+    stream_.expires_after(trusted_ ? kRequestTime : kFirstHeaderTime);
     http::async_read_header(
         stream_, buffer_, *parser_,
         [self = shared_from_this()](const error_code& error, std::size_t /*size*/) { self->headerRead(error); });
@@ -98,10 +121,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return;
     }
     request_ = toRequest(parser_->get().base());
-    if (std::optional<HttpResponse> denied = site_.access.check(request_)) {
+    if (std::optional<HttpResponse> denied =
+            site_.access.check(request_, {site_.clock.seconds(), [this] { return isOwnUser(); }})) {
       if (parser_->is_done()) return write(std::move(*denied));
       return reject(std::move(*denied));
     }
+    trusted_ = true;
+    stream_.expires_after(kRequestTime);
     if (beast::websocket::is_upgrade(parser_->get())) return upgrade();
     const std::uint64_t limit = maxBodyBytes(request_.method, request_.target);
     const boost::optional<std::uint64_t> length = parser_->content_length();
@@ -111,6 +137,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (parser_->get()[http::field::expect] == "100-continue") return acceptBody();
     readBody();
   }
+
+  bool isOwnUser() {
+    error_code error;
+    const tcp::endpoint server = stream_.socket().local_endpoint(error);
+    return !error && userOfSocket(peer_, server) == ::getuid();
+  }
+
+  void leaveSite() { std::erase(site_.connections, this); }
 
   void acceptBody() {
     continue_.emplace(http::status::continue_, 11);
@@ -132,13 +166,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void answer() {
     const std::optional<RequestTarget> target = parseTarget(request_.target);
-    nonce_ = randomToken();
     if (target->path.starts_with("/api/")) {
+      nonce_.clear();
       Api::Answer answer = site_.api.handle(request_);
       if (auto* response = std::get_if<HttpResponse>(&answer)) return write(std::move(*response));
       stream_.expires_never();  // the answer has a time limit of its own
       return awaitAnswer(std::get<std::unique_ptr<PendingAnswer>>(std::move(answer)));
     }
+    nonce_ = randomToken();
     if (target->path == "/ws") return write(errorResponse(426, "this address is that of the WebSocket"));
     if (request_.method != "GET") {
       HttpResponse response = errorResponse(405, fmt::format("the method {} is not supported here", request_.method));
@@ -161,7 +196,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (parseTarget(request_.target)->path != "/ws") return reject(errorResponse(404, "this page does not exist"));
     PageSession::Options options;
     options.worker = site_.options.worker;
-    options.settings = {site_.folder, site_.options.device, site_.options.defaults};
+    options.settings.folder = site_.project.root().string();
+    options.settings.device = site_.options.device;
+    options.settings.contained = site_.options.contained;
+    options.settings.memory = site_.options.memory;
+    options.settings.defaults = site_.options.defaults;
+    options.project = &site_.project;
     options.idleSeconds = site_.options.idleSeconds;
     options.accepted = site_.sessions.size() < site_.options.defaults.maxSessions;
     auto key = std::make_shared<PageSession*>(nullptr);
@@ -169,6 +209,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const auto session = std::make_shared<PageSession>(std::move(stream_), std::move(options));
     *key = session.get();
     if (site_.sessions.size() < site_.options.defaults.maxSessions) site_.sessions.insert(session.get());
+    leaveSite();
     session->start(parser_->release());
   }
 
@@ -215,6 +256,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   static constexpr std::size_t kMaxDrained = std::size_t{16} << 20;
 
   beast::tcp_stream stream_;
+  tcp::endpoint peer_;
+  bool trusted_ = false;
   asio::steady_timer answerTimer_{stream_.get_executor()};
   Site& site_;
   beast::flat_buffer buffer_;
@@ -242,18 +285,24 @@ class Server::Implementation {
                        .page = Page(options_.page),
                        .api = Api(project, options_.defaults),
                        .options = options_,
-                       .folder = project.root().string(),
-                       .sessions = {}});
+                       .project = project,
+                       .sessions = {},
+                       .connections = {},
+                       .clock = {}});
   }
 
   std::uint16_t port() const { return port_; }
 
-  std::string url() const {
-    const asio::ip::address address = asio::ip::make_address(options_.address);
-    std::string host = address.is_unspecified() ? machineName() : options_.address;
-    if (host.empty()) host = "localhost";
-    if (host.find(':') != host.npos) host = fmt::format("[{}]", host);
-    return fmt::format("http://{}:{}/?token={}", host, port_, token_);
+  std::string url() const { return address() + "/?token=" + token_; }
+  std::string urlForBrowser() { return address() + "/?ticket=" + site_->access.issueTicket(site_->clock.seconds()); }
+
+  std::string exposure() const {
+    const asio::ip::address bound = asio::ip::make_address(options_.address);
+    if (bound.is_loopback()) return {};
+    return fmt::format(
+        "all machines that reach {}, port {}, can connect; a person who has the URL, or reads it on the network (HTTP "
+        "is not encrypted), can read and change the files of the project and run shaders",
+        bound.is_unspecified() ? "an address of this machine" : options_.address, port_);
   }
 
   void run() {
@@ -269,6 +318,14 @@ class Server::Implementation {
   }
 
  private:
+  std::string address() const {
+    const asio::ip::address bound = asio::ip::make_address(options_.address);
+    std::string host = bound.is_unspecified() ? machineName() : options_.address;
+    if (host.empty()) host = "localhost";
+    if (host.find(':') != host.npos) host = fmt::format("[{}]", host);
+    return fmt::format("http://{}:{}", host, port_);
+  }
+
   std::uint16_t listen() {
     error_code error;
     const asio::ip::address address = asio::ip::make_address(options_.address, error);
@@ -286,8 +343,10 @@ class Server::Implementation {
   void accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && site_->connections < kMaxConnections) {
-        error_code ignored;
+      if (error) return acceptLater();
+      error_code ignored;
+      const asio::ip::address address = socket.remote_endpoint(ignored).address();
+      if (makeRoom(address)) {
         socket.set_option(tcp::no_delay(true), ignored);  // an image does not wait for the confirmation of its header
         std::make_shared<Connection>(std::move(socket), *site_)->read();
       }
@@ -295,9 +354,30 @@ class Server::Implementation {
     });
   }
 
+  void acceptLater() {
+    acceptTimer_.expires_after(kAcceptPause);
+    acceptTimer_.async_wait([this](const error_code& error) {
+      if (!error && acceptor_.is_open()) accept();
+    });
+  }
+
+  // Connections that have not sent the token make room for a new one, so that a browser gets in, however many others keep open.
+  bool makeRoom(const asio::ip::address& address) {
+    const auto& all = site_->connections;
+    const auto isSame = [&](const Connection* connection) { return connection->address() == address; };
+    const bool full = all.size() >= kMaxConnections;
+    if (!full && static_cast<std::size_t>(std::ranges::count_if(all, isSame)) < kMaxConnectionsPerAddress) return true;
+    const auto victim = std::ranges::find_if(
+        all, [&](const Connection* connection) { return !connection->isTrusted() && (full || isSame(connection)); });
+    if (victim == all.end()) return false;
+    (*victim)->close();
+    return true;
+  }
+
   // Pages learn that the server ends, and their workers end.
   void beginStop() {
     acceptor_.close();
+    acceptTimer_.cancel();
     for (PageSession* session : site_->sessions) session->stop();
     stopTimer_.expires_after(site_->sessions.empty() ? std::chrono::seconds(0) : kStopTime);
     stopTimer_.async_wait([this](const error_code& /*error*/) { context_.stop(); });
@@ -317,7 +397,7 @@ class Server::Implementation {
   tcp::acceptor acceptor_;
   const std::uint16_t port_;
   asio::signal_set signals_;
-  asio::steady_timer stopTimer_;
+  asio::steady_timer stopTimer_, acceptTimer_{context_};
 };
 
 Server::Server(const ProjectFolder& project, ServerOptions options)
@@ -326,6 +406,8 @@ Server::~Server() = default;
 
 std::uint16_t Server::port() const { return implementation_->port(); }
 std::string Server::url() const { return implementation_->url(); }
+std::string Server::urlForBrowser() { return implementation_->urlForBrowser(); }
+std::string Server::exposure() const { return implementation_->exposure(); }
 void Server::run() { implementation_->run(); }
 void Server::stop() { implementation_->stop(); }
 

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/json.h"
+#include "base/text.h"
 #include "job/observer.h"
 #include "lab/page_message.h"
 #include "lab/session_events.h"
@@ -34,7 +36,9 @@ SessionSupervisor::Actions SessionSupervisor::started(double now, bool hold, con
   if (!open_.empty()) actions.toWorker.push_back(resumed(keepParameters_));
   keepParameters_ = true;
   state_ = State::running;
-  stuck_ = compiling_ = false;
+  ended_.clear();
+  exceeded_ = false;
+  compiling_ = false;
   lastAlive_ = now;
   return actions;
 }
@@ -74,8 +78,8 @@ void SessionSupervisor::workerSent(double now, std::string_view message) {
 
 // The last `open`, with what the user has changed since.
 std::string SessionSupervisor::resumed(bool keepParameters) const {
-  Json open = Json::parse(open_, nullptr, false);
-  const Json state = Json::parse(shown_, nullptr, false);
+  Json open = findJson(open_).value_or(Json::object());
+  const Json state = findJson(shown_).value_or(nullptr);
   open.erase("id");
   if (state.is_object()) {
     for (const char* key : {"program", "width", "height", "output", "exposure", "tonemap", "frame", "camera"})
@@ -90,15 +94,18 @@ std::string SessionSupervisor::resumed(bool keepParameters) const {
 SessionSupervisor::Actions SessionSupervisor::workerEnded(double now, const WorkerEnd& end) {
   if (state_ == State::ended) return {};  // it was idle
   ++restarts_;
-  const bool hung = end.hung.has_value() || stuck_;
+  const bool hung = end.hung.has_value() || !ended_.empty();
   const bool killed = end.signal == 9 && !hung;  // not by the program that it ran
-  const std::string message =
-      stuck_ ? fmt::format("the driver did not answer within {:g} s; it possibly compiles an endless shader",
-                           stuckSeconds_)
-             : end.hung.value_or(endText(end));
+  const std::string message = !ended_.empty() ? ended_ : end.hung.value_or(endText(end));
   keepParameters_ = killed;
   const bool again = lastCrash_ && now - *lastCrash_ < kCrashSeconds;
   lastCrash_ = now;
+  if (exceeded_ && again) {  // also without a program: the limit is too low
+    state_ = State::ended;
+    Actions actions;
+    actions.toPage.push_back(workerJson("hung", message, restarts_));
+    return actions;
+  }
   const bool hold = !open_.empty() && (hung || again);
   Actions actions = started(now, hold, hold ? "waiting" : "started",
                             hold ? "the program runs again as soon as one of its files is saved" : "");
@@ -121,11 +128,23 @@ SessionSupervisor::Actions SessionSupervisor::tick(double now) {
     actions.end = true;
     actions.toPage.push_back(
         workerJson("idle", "the session was not used for some time; it continues with the next command", restarts_));
-  } else if (now - lastAlive_ > stuckLimit() && !stuck_) {
-    stuck_ = true;
-    stuckSeconds_ = stuckLimit();
+  } else if (now - lastAlive_ > stuckLimit() && ended_.empty()) {
+    ended_ =
+        fmt::format("the driver did not answer within {:g} s; it possibly compiles an endless shader", stuckLimit());
     actions.end = true;  // workerEnded() follows
   }
+  return actions;
+}
+
+SessionSupervisor::Actions SessionSupervisor::workerExceeded(std::uint64_t limit) {
+  Actions actions;
+  if (state_ != State::running || !ended_.empty()) return actions;
+  exceeded_ = true;
+  ended_ = fmt::format(
+      "the program, its scene or the compiler needs more than {} of memory, the limit; quintet lab --max-memory raises "
+      "it",
+      bytesText(limit));
+  actions.end = true;  // workerEnded() follows
   return actions;
 }
 

@@ -5,6 +5,7 @@
 #define QUINTET_LAB_SESSION_SUPERVISOR_H
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +22,7 @@ inline constexpr double kCompileSeconds = 10;
 struct WorkerEnd {
   int signal = 0;                   // that ended it; 0 if it has exited
   int status = 0;                   // exit status
-  std::optional<std::string> hung;  // Control::hung, or a text for a worker that did not answer
+  std::optional<std::string> hung;  // Control::hung
 };
 
 class SessionSupervisor {
@@ -49,6 +50,8 @@ class SessionSupervisor {
     compiling_ = false;
   }
   Actions workerEnded(double now, const WorkerEnd& end);
+  // It uses more memory than it may.
+  Actions workerExceeded(std::uint64_t limit);
   // The system could not start a worker. The next command of the page tries again.
   Actions workerMissing(const std::string& message);
   // Call it about once per second.
@@ -66,9 +69,9 @@ class SessionSupervisor {
   const Limits limits_;
   State state_ = State::ended;
   unsigned restarts_ = 0;
-  bool stuck_ = false;          // the worker was ended because it did not answer
+  bool exceeded_ = false;       // that is workerExceeded()
+  std::string ended_;           // why this object has ended the worker; empty if it has not
   bool compiling_ = false;      // the last message was job::kCompilingStage
-  double stuckSeconds_ = 0;     // for which it did not answer
   bool keepParameters_ = true;  // for the next worker
   double lastPage_ = 0, lastAlive_ = 0;
   std::optional<double> lastCrash_;

@@ -24,6 +24,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/file_roots.h"
 #include "base/parse.h"
 #include "base/stopwatch.h"
@@ -47,10 +48,12 @@
 #include "lab/private_folder.h"
 #include "lab/program_files.h"
 #include "lab/project_folder.h"
+#include "lab/sandbox.h"
 #include "lab/session_events.h"
 #include "lab/session_video.h"
 #include "lab/unsaved_program.h"
 #include "lab/worker_control.h"
+#include "lab/worker_process.h"
 #include "output/plan.h"
 #include "output/write.h"
 #include "program/load.h"
@@ -92,12 +95,16 @@ class Inbox {
   struct Message {
     std::variant<PageMessage, PageMessageError, ControlMessage> content;
   };
+  // Of messages that were not taken. Then the server keeps the next ones, up to a limit of its own.
+  static constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 
   // Waits for messages, up to `seconds`.
   std::vector<Message> take(double seconds) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return closed_ || !messages_.empty(); });
     urgent_ = false;
+    bytes_ = 0;
+    hasRoom_.notify_one();
     return std::exchange(messages_, {});
   }
   bool closed() const {
@@ -134,7 +141,9 @@ class Inbox {
       }
     }
     {
-      const std::lock_guard lock(mutex_);
+      std::unique_lock lock(mutex_);
+      hasRoom_.wait(lock, [&] { return bytes_ < kMaxBytes; });
+      bytes_ += frame.data.size() + sizeof message;
       messages_.push_back(std::move(message));
       urgent_ = urgent_ || urgent;
     }
@@ -143,18 +152,22 @@ class Inbox {
 
   FrameChannel& channel_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable changed_, hasRoom_;
   std::vector<Message> messages_;
+  std::size_t bytes_ = 0;  // of messages_
   bool closed_ = false, urgent_ = false;
   std::thread thread_;  // last: it uses the members above
 };
 
 class Worker : public job::Observer {
  public:
-  Worker(FrameChannel& channel, WorkerSettings settings)
-      : channel_(channel), settings_(std::move(settings)), project_(settings_.folder), inbox_(channel) {
-    addFileRoot(private_.path());
-  }
+  // `folder`: for temporary files.
+  Worker(FrameChannel& channel, WorkerSettings settings, const fs::path& folder)
+      : channel_(channel),
+        settings_(std::move(settings)),
+        project_(settings_.folder, settings_.files),
+        folder_(folder),
+        inbox_(channel) {}
 
   int run() {
     openEngine();
@@ -413,7 +426,7 @@ class Worker : public job::Observer {
   }
 
   void start(const OpenSession& command) {
-    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(private_.path(), command.files);
+    unsaved_ = command.files.empty() ? nullptr : std::make_unique<UnsavedProgram>(folder_, command.files);
     discardGraphs();
     if (!unsaved_) loadableName(project_, command.program);  // throws
     interactive::SessionRequest request;
@@ -698,8 +711,8 @@ class Worker : public job::Observer {
   const WorkerSettings settings_;
   const ProjectFolder project_;
   const Stopwatch clock_;
-  const PrivateFolder private_;
-  FileDownloads downloads_{private_.path()};
+  const fs::path folder_;
+  FileDownloads downloads_{folder_};
   std::unique_ptr<job::Engine> engine_;
   std::unique_ptr<UnsavedProgram> unsaved_;  // that the session shows
   std::unique_ptr<interactive::Session> session_;
@@ -726,6 +739,30 @@ class Worker : public job::Observer {
   Inbox inbox_;              // last: its thread
 };
 
+// Gives up what a session does not need. Shaders of a CPU can do what this process can.
+void contain(const WorkerSettings& settings, const fs::path& folder) {
+  // Stacks of the compiler and arenas of allocators reserve more than they use; the server watches what is used.
+  constexpr std::uint64_t kReserved = std::uint64_t{8} << 30;
+  SandboxRules rules{.memory = settings.memory > 0 ? settings.memory + kReserved : 0};
+  rules.readable.emplace_back(settings.folder);
+  for (const fs::path& root : FileRoots::fromEnvironment().folders()) rules.readable.push_back(root);
+  if (const char* library = std::getenv("QUINTET_SHADER_PATH")) rules.readable.emplace_back(library);
+  rules.writable.push_back(folder);
+  // A cache that other programs use could contain code for them.
+  if (fs::path caches = cacheFolder(); !caches.empty()) {
+    caches /= "lab";
+    std::error_code error;
+    fs::create_directories(caches, error);
+    for (const char* variable :
+         {"QUINTET_CACHE_DIR", "XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"})
+      ::setenv(variable, caches.c_str(), 1);
+    rules.writable.push_back(caches);
+  }
+  ::setenv("TMPDIR", folder.c_str(), 1);
+  endBySignals();
+  enterSandbox(rules);
+}
+
 }  // namespace
 
 int runWorker(int socket) {
@@ -736,7 +773,10 @@ int runWorker(int socket) {
   if (!first) return 0;
   WorkerSettings settings = parseSettings(first->data);
   fs::current_path(settings.folder);  // so that names in the project are paths
-  return Worker(channel, std::move(settings)).run();
+  const PrivateFolder folder(static_cast<pid_t>(settings.process));
+  addFileRoot(folder.path());
+  if (settings.contained) contain(settings, folder.path());
+  return Worker(channel, std::move(settings), folder.path()).run();
 }
 
 }  // namespace quintet::lab

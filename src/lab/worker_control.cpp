@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json.h"
 
 namespace quintet::lab {
 namespace {
@@ -26,7 +27,11 @@ auto parsed(const Function& function) {
 std::string settingsJson(const WorkerSettings& settings) {
   const LabDefaults& defaults = settings.defaults;
   return lineOf({{"folder", settings.folder},
+                 {"files", settings.files},
                  {"device", settings.device},
+                 {"contained", settings.contained},
+                 {"memory", settings.memory},
+                 {"process", settings.process},
                  {"width", defaults.size.x},
                  {"height", defaults.size.y},
                  {"samples", defaults.samples},
@@ -35,10 +40,14 @@ std::string settingsJson(const WorkerSettings& settings) {
 
 WorkerSettings parseSettings(std::string_view json) {
   return parsed([&] {
-    const Json object = Json::parse(json);
+    const Json object = parseJson(json);
     WorkerSettings settings;
     settings.folder = object.at("folder").get<std::string>();
+    settings.files = object.at("files").get<std::vector<std::string>>();
     settings.device = object.at("device").get<std::string>();
+    settings.contained = object.at("contained").get<bool>();
+    settings.memory = object.at("memory").get<std::uint64_t>();
+    settings.process = object.at("process").get<std::int64_t>();
     settings.defaults.size = uvec2(object.at("width").get<std::uint32_t>(), object.at("height").get<std::uint32_t>());
     settings.defaults.samples = object.at("samples").get<std::uint32_t>();
     settings.defaults.timeout = object.at("timeout").get<double>();
@@ -52,7 +61,7 @@ std::string controlJson(const ControlMessage& message) {
 
 ControlMessage parseControl(std::string_view json) {
   return parsed([&] {
-    const Json object = Json::parse(json);
+    const Json object = parseJson(json);
     return ControlMessage{static_cast<Control>(object.at("control").get<int>()),
                           object.at("message").get<std::string>()};
   });

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lab/api.h"
 
@@ -17,8 +18,12 @@ inline constexpr int kHungStatus = 70;
 
 // The first message to a worker.
 struct WorkerSettings {
-  std::string folder;  // of the project
-  std::string device;  // job::EngineOptions::device
+  std::string folder;              // of the project
+  std::vector<std::string> files;  // that belong to it; empty means all
+  std::string device;              // job::EngineOptions::device
+  bool contained = true;           // in a sandbox (sandbox.h)
+  std::uint64_t memory = 0;        // bytes that the process can use; 0: no limit
+  std::int64_t process = 0;        // of the worker, as the server sees it
   LabDefaults defaults;
 };
 std::string settingsJson(const WorkerSettings& settings);

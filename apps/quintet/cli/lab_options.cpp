@@ -37,7 +37,14 @@ OptionTable labOptionTable(LabOptions& options, LabTexts& texts) {
              {.names = "--idle",
               .value = "SECONDS",
               .help = "Time without a command after which the process of a page ends (default: 600)",
-              .target = &texts.idle}});
+              .target = &texts.idle},
+             {.names = "--max-memory",
+              .value = "BYTES",
+              .help = "Memory that the process of a page can use: 8G, 500M (default: half of the machine's)",
+              .target = &texts.maxMemory},
+             {.names = "--no-sandbox",
+              .help = "Do not restrict what shaders of a CPU device can reach: for drivers in unusual folders",
+              .target = &options.noSandbox}});
   table.add("Image", {{.names = "--size",
                        .value = "WxH",
                        .help = "Size of a new image, pixels (default: 640x360)",
@@ -68,6 +75,7 @@ std::optional<LabOptions> parseLabOptions(Arguments arguments) {
   LabTexts texts;
   if (!parse(labOptionTable(options, texts), arguments)) return std::nullopt;
   if (const auto port = parseInteger("--port", texts.port, 0, 65535)) options.port = static_cast<std::uint16_t>(*port);
+  options.maxMemory = parseBytes("--max-memory", texts.maxMemory).value_or(0);
   options.timeout = parseReal("--timeout", texts.timeout, 0.1, 86400).value_or(options.timeout);
   options.idle = parseReal("--idle", texts.idle, 1, 1e6).value_or(options.idle);
   if (const auto samples = parseInteger("--spp", texts.samples, 1, 1 << 24))

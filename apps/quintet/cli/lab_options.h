@@ -3,6 +3,7 @@
 #ifndef QUINTET_CLI_LAB_OPTIONS_H
 #define QUINTET_CLI_LAB_OPTIONS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,11 +27,13 @@ struct LabOptions {
   uvec2 size{640, 360};  // pixels, of a new session
   std::uint32_t samples = 64;
   std::uint32_t sessions = 16;  // that can be open at a time
+  std::size_t maxMemory = 0;    // bytes that the process of a page can use; 0: half of the machine's memory
+  bool noSandbox = false;       // processes of pages are not restricted
 };
 
 // Values as text, before they are converted.
 struct LabTexts {
-  std::string port, timeout, idle, size, samples, sessions;
+  std::string port, timeout, idle, size, samples, sessions, maxMemory;
 };
 
 OptionTable labOptionTable(LabOptions& options, LabTexts& texts);

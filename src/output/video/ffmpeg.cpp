@@ -97,11 +97,11 @@ FfmpegProcess::FfmpegProcess(const std::filesystem::path& program, const std::ve
 }
 
 FfmpegProcess::~FfmpegProcess() {
+  closeInput();  // it ends then, too, where signals to other processes are not allowed
   if (pid_ > 0) {
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
   }
-  closeInput();
   ::close(messages_);
 }
 

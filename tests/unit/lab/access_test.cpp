@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/access.h"
 
+#include <optional>
+#include <string>
+
 #include <gmock/gmock.h>
 
 namespace quintet::lab {
@@ -8,24 +11,53 @@ namespace {
 
 class AccessTest : public ::testing::Test {
  protected:
-  unsigned status(HttpRequest request) const {
-    const auto denied = access_.check(request);
+  std::optional<HttpResponse> check(const HttpRequest& request, double now = 0, bool isOwnUser = true) {
+    return access_.check(request, {now, [isOwnUser] { return isOwnUser; }});
+  }
+  unsigned status(const HttpRequest& request, double now = 0, bool isOwnUser = true) {
+    const auto denied = check(request, now, isOwnUser);
     return denied ? denied->status : 200;
   }
   static HttpRequest get(const std::string& target, std::map<std::string, std::string> headers = {}) {
     headers.emplace("host", "localhost:8420");
     return {.method = "GET", .target = target, .headers = std::move(headers)};
   }
-  const Access access_{"secret", 8420, "Workshop"};
+  Access access_{"secret", 8420, "Workshop"};
 };
 
 TEST_F(AccessTest, RedirectsTheUrlWithTheTokenAndSetsACookie) {
-  const auto answer = access_.check(get("/?token=secret"));
+  const auto answer = check(get("/?token=secret"));
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 303u);
   EXPECT_THAT(answer->headers, ::testing::Contains(::testing::Pair(
                                    "Set-Cookie", "quintet_lab_8420=secret; HttpOnly; SameSite=Strict; Path=/")));
   EXPECT_THAT(answer->headers, ::testing::Contains(::testing::Pair("Location", "/")));
+}
+
+TEST_F(AccessTest, ATicketIsValidOnce) {
+  EXPECT_EQ(status(get("/?ticket=")), 403u);
+  const std::string ticket = access_.issueTicket(0);
+  EXPECT_EQ(ticket.find("secret"), ticket.npos);
+  EXPECT_EQ(status(get("/?ticket=" + ticket + "0")), 403u);
+  EXPECT_EQ(status(get("/api/files?ticket=" + ticket)), 403u);
+  EXPECT_EQ(status(get("/?ticket=" + ticket), 0, false),
+            403u);  // of a different user, who has read it in a list of processes
+  const auto answer = check(get("/?ticket=" + ticket), kTicketSeconds);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 303u);
+  EXPECT_THAT(answer->headers, ::testing::Contains(::testing::Pair(
+                                   "Set-Cookie", "quintet_lab_8420=secret; HttpOnly; SameSite=Strict; Path=/")));
+  EXPECT_EQ(status(get("/?ticket=" + ticket)), 403u);
+  EXPECT_EQ(status(get("/?ticket=" + ticket, {{"cookie", "quintet_lab_8420=secret"}})), 200u);  // a reload
+}
+
+TEST_F(AccessTest, ATicketExpiresAndIsReplaced) {
+  const std::string first = access_.issueTicket(10);
+  EXPECT_EQ(status(get("/?ticket=" + first), 10 + kTicketSeconds + 1), 403u);
+  const std::string second = access_.issueTicket(20);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(status(get("/?ticket=" + first), 20), 403u);
+  EXPECT_EQ(status(get("/?ticket=" + second), 20), 303u);
 }
 
 TEST_F(AccessTest, AcceptsTheCookieAndTheHeader) {

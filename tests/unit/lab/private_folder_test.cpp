@@ -31,7 +31,7 @@ fs::path folderOf(pid_t process) {
 }
 
 TEST(PrivateFolder, ExistsAsLongAsTheObject) {
-  std::optional<PrivateFolder> folder(std::in_place);
+  std::optional<PrivateFolder> folder(std::in_place, ::getpid());
   const fs::path path = folder->path();
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
   folder.reset();
@@ -39,7 +39,7 @@ TEST(PrivateFolder, ExistsAsLongAsTheObject) {
 }
 
 TEST(PrivateFolder, RemovesThoseOfProcessesThatHaveEnded) {
-  const PrivateFolder own;
+  const PrivateFolder own(::getpid());
   const fs::path ended = folderOf(endedProcess()), other = folderOf(endedProcess());
   fs::remove_all(folderOf(::getppid()));
   const fs::path running = folderOf(::getppid());

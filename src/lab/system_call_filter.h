@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The system calls that a worker cannot use (seccomp): sockets, other processes, attributes of files, mounts, namespaces, kernel
+// modules, and what would evade the other parts of the sandbox.
+#ifndef QUINTET_LAB_SYSTEM_CALL_FILTER_H
+#define QUINTET_LAB_SYSTEM_CALL_FILTER_H
+
+namespace quintet::lab {
+
+// Whether the kernel and this architecture support the filter.
+bool hasSystemCallFilter();
+
+// For this thread, later ones, and all processes that they start. Denied calls fail with EPERM; those that a caller can replace with
+// ENOSYS. `ownSignals`: signals can be sent to this process only. Throws Error.
+void filterSystemCalls(bool ownSignals);
+
+}  // namespace quintet::lab
+#endif
