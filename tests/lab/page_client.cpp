@@ -48,8 +48,10 @@ Headers withDefaults(const LabProcess& server, Headers headers) {
 
 }  // namespace
 
-LabProcess::LabProcess(const std::filesystem::path& target, const std::vector<std::string>& options) {
-  std::vector<std::string> texts{QUINTET_LAB_BINARY, target.string(), "--no-open", "--port", "0"};
+LabProcess::LabProcess(const std::filesystem::path& target, const std::vector<std::string>& options,
+                       bool opensBrowser) {
+  std::vector<std::string> texts{QUINTET_LAB_BINARY, target.string(), "--port", "0"};
+  if (!opensBrowser) texts.emplace_back("--no-open");
   texts.insert(texts.end(), options.begin(), options.end());
   std::vector<char*> arguments;
   for (std::string& text : texts) arguments.push_back(text.data());
@@ -238,6 +240,8 @@ unsigned PageClient::waitForClose(double seconds) {
   }
   return connection_->stream.reason().code;
 }
+
+std::string PageClient::closeReason() const { return connection_->stream.reason().reason.c_str(); }
 
 void PageClient::close() {
   error_code ignored;

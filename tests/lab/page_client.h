@@ -34,7 +34,9 @@ struct Reply {
 // The server `quintet-lab` on a folder.
 class LabProcess {
  public:
-  explicit LabProcess(const std::filesystem::path& target, const std::vector<std::string>& options = {});
+  // `opensBrowser`: without --no-open.
+  explicit LabProcess(const std::filesystem::path& target, const std::vector<std::string>& options = {},
+                      bool opensBrowser = false);
   ~LabProcess();  // ends it
   LabProcess(const LabProcess&) = delete;
   LabProcess& operator=(const LabProcess&) = delete;
@@ -80,6 +82,7 @@ class PageClient {
   std::string readFile(const Json& file);
   // The close code of the server.
   unsigned waitForClose(double seconds = 10);
+  std::string closeReason() const;  // of the server, after waitForClose()
   void close();
 
   const std::vector<Json>& events() const { return events_; }  // all so far
