@@ -45,13 +45,17 @@ function tokens(text: string): Token[] {
   return found;
 }
 
+// A comment with stars names the stage, as does one that has only the name and "shader".
 function markerOf(comment: string): StageKind | undefined {
-  if (!/\*{2,}/.test(comment)) return undefined;
-  return kMarkers.find(([pattern]) => pattern.test(comment))?.[1];
+  const found = kMarkers.find(([pattern]) => pattern.test(comment));
+  if (!found) return undefined;
+  const [pattern, kind] = found;
+  return /\*{2,}/.test(comment) || !/[A-Za-z0-9]/.test(comment.replace(pattern, "")) ? kind : undefined;
 }
 
 interface Main {
   start: number; // of "void"
+  marker: number; // start of the comment before "void" that names the stage; else that of "void"
   end: number; // after the closing brace
   kind: StageKind | "unknown";
 }
@@ -60,6 +64,7 @@ function findMains(text: string): Main[] {
   const all = tokens(text);
   const mains: Main[] = [];
   let depth = 0;
+  let after = -1; // the last token of the main before
   for (let i = 0; i < all.length; ++i) {
     const token = all[i]!;
     if (token.text === "{") ++depth;
@@ -89,17 +94,23 @@ function findMains(text: string): Main[] {
         }
       } else if (level > 0) codeInBody = true;
     }
+    // Declarations may follow the comment.
     let before: StageKind | undefined;
-    for (let j = i - 1; j >= 0 && all[j]!.comment; --j) before ??= markerOf(all[j]!.text);
-    mains.push({ start: token.start, end, kind: atStart ?? before ?? inBody ?? "unknown" });
-    i = last;
+    let marker = token.start;
+    for (let j = i - 1; j > after && before === undefined; --j) {
+      if (!all[j]!.comment) continue;
+      before = markerOf(all[j]!.text);
+      if (before && !atStart) marker = all[j]!.start;
+    }
+    mains.push({ start: token.start, marker, end, kind: atStart ?? before ?? inBody ?? "unknown" });
+    i = after = last;
   }
   return mains;
 }
 
 // Start of the line of `offset`, or of the comments directly above it that contain a stage marker.
 function startOfMain(text: string, main: Main, floor: number): number {
-  let start = text.lastIndexOf("\n", main.start - 1) + 1;
+  let start = text.lastIndexOf("\n", main.marker - 1) + 1;
   for (;;) {
     const above = text.slice(floor, start);
     const line = /(?:^|\n)([^\n]*)\n$/.exec(above)?.[1];

@@ -67,6 +67,22 @@ test("common text between stages has a part of its own", () => {
   assert.equal(joinSegments(segments), text);
 });
 
+test("a new program has the names of its stages, although declarations follow the comments", () => {
+  const source = readFileSync(`${REPOSITORY}/src/program/new_program.cpp`, "utf8");
+  const template = /kLecture = R"\(([\s\S]*?)\)"/.exec(source)![1]!;
+  const segments = splitLecture(template);
+  assert.equal(joinSegments(segments), template);
+  assert.deepEqual(segmentTitles(segments), ["Common", "Ray generation", "Closest hit", "Miss"]);
+  assert.match(segments[1]!.text, /^\/\*\*\*\* RAY GENERATION SHADER[\s\S]*uniform float fov;/);
+});
+
+test("a comment that has only the name of a stage counts, other words do not", () => {
+  assert.deepEqual(kinds("// Miss shader\nuniform float a;\nvoid main() {\n}\n"), ["rmiss"]);
+  assert.deepEqual(kinds("// This is not the miss shader.\nvoid main() {\n}\n"), ["unknown"]);
+  const two = "/**** MISS SHADER ****/\nvoid main() {\n}\nint a;\nvoid main() {\n}\n";
+  assert.deepEqual(kinds(two), ["rmiss", "unknown"], "the comment belongs to the first main");
+});
+
 test("incomplete text stays in one part", () => {
   assert.deepEqual(kinds(""), ["unknown"]);
   assert.deepEqual(kinds("int a;\n"), ["unknown"]);
