@@ -48,7 +48,8 @@ export function isGlsl(kind: EditorDocument["kind"]): kind is Segment["kind"] {
   return kind !== "toml" && kind !== "text";
 }
 
-export type FileStatus = "saved" | "changed" | "saving" | "conflict" | "failed";
+// "missing": it was deleted on disk, and has no edit that would write it again.
+export type FileStatus = "saved" | "changed" | "saving" | "conflict" | "failed" | "missing";
 
 export interface SourceFile {
   path: string;
@@ -78,6 +79,7 @@ export interface WorkspaceHandlers {
 }
 
 const kSaveDelay = 300; // ms after the last edit
+const kRetryDelays = [1, 2, 4, 8, 15, 30]; // seconds until a save that failed is repeated
 
 let nextDocument = 1;
 
@@ -89,6 +91,8 @@ export class Workspace {
   private diagnostics: readonly Diagnostic[] = [];
   private timer: ReturnType<typeof setTimeout> | undefined;
   private saving: Promise<void> = Promise.resolve();
+  private retry: ReturnType<typeof setTimeout> | undefined;
+  private failures = 0; // since the last save that succeeded
   private quiet = false; // changes that do not come from the user
   private generation = 0;
 
@@ -99,12 +103,14 @@ export class Workspace {
   }
 
   get status(): FileStatus {
-    for (const status of ["conflict", "failed", "saving", "changed"] as const) if (this.files.some((file) => file.status === status)) return status;
+    for (const status of ["conflict", "failed", "missing", "saving", "changed"] as const) if (this.files.some((file) => file.status === status)) return status;
     return "saved";
   }
 
   open(program: ProgramText): void {
     clearTimeout(this.timer);
+    clearTimeout(this.retry);
+    this.failures = 0;
     ++this.generation;
     this.program = program;
     this.diagnostics = [];
@@ -163,10 +169,12 @@ export class Workspace {
     this.handlers.onStatus();
   }
 
-  // Writes all edits to disk now, also those that could not be written before.
-  save(): Promise<void> {
+  // Writes all edits to disk now, also those that could not be written before. `missing`: also files that were deleted.
+  save({ missing = false } = {}): Promise<void> {
     clearTimeout(this.timer);
-    for (const file of this.files) if (file.status === "failed" || (file.status === "conflict" && !file.merging)) file.status = "changed";
+    clearTimeout(this.retry);
+    for (const file of this.files)
+      if (file.status === "failed" || (file.status === "conflict" && !file.merging) || (missing && file.status === "missing")) file.status = "changed";
     return this.afterSaving(async (generation) => {
       const copies = this.program?.builtIn === true && this.files.some((file) => file.status === "changed");
       if (copies && !(await this.makeCopy())) return;
@@ -186,6 +194,7 @@ export class Workspace {
   // Forgets all edits that are not saved: the editors show what is on disk, as far as known.
   discard(): void {
     clearTimeout(this.timer);
+    clearTimeout(this.retry);
     for (const file of this.files) {
       if (file.status === "saved") continue;
       this.replaceText(file, file.base, true);
@@ -221,16 +230,29 @@ export class Workspace {
     let entries;
     try {
       entries = await api.files();
-    } catch {
-      return; // the connection reports it
+    } catch (error) {
+      if ((error as ApiError).status !== 0 && generation === this.generation) this.reportMissing((error as ApiError).message); // else the connection reports it
+      return;
     }
     if (generation !== this.generation) return;
     for (const file of this.files) {
       const entry = entries.find((candidate) => candidate.path === file.path);
-      if (!entry || entry.modified === file.modified || file.status === "saving" || file.status === "conflict") continue;
-      file.modified = entry.modified;
-      await this.reload(file);
+      if (file.status === "saving" || file.status === "conflict") continue;
+      if (entry ? entry.modified === file.modified && file.status !== "missing" : file.status === "missing") continue;
+      file.modified = entry?.modified ?? 0;
+      await this.reload(file); // the list can be incomplete
     }
+  }
+
+  // No file of the project can be read.
+  private reportMissing(message: string): void {
+    for (const file of this.files)
+      if (file.status === "saved") {
+        file.status = "missing";
+        file.message = message;
+        file.modified = 0;
+      }
+    this.handlers.onStatus();
   }
 
   // Replaces the content of a file, as one step of undo.
@@ -286,7 +308,7 @@ export class Workspace {
           label: title,
           context: () => this.contextOf(document),
           ...(language === "glsl" && { completions: glslCompletions(() => this.contextOf(document)) }),
-          save: () => void this.save(),
+          save: () => void this.save({ missing: true }),
           format: (view) => void formatDocument(view, language === "glsl"),
           extra: EditorView.updateListener.of((update) => {
             document.state = update.state;
@@ -365,19 +387,28 @@ export class Workspace {
   }
 
   private fail(message: string): void {
-    for (const file of this.files)
-      if (file.status === "changed") {
-        file.status = "failed";
-        file.message = message;
-      }
-    this.handlers.notify(message, "error");
+    const failed = this.files.filter((file) => file.status === "changed");
+    // A repetition of the save is not reported again.
+    if (failed.some((file) => file.message !== message)) this.handlers.notify(message, "error");
+    for (const file of failed) {
+      file.status = "failed";
+      file.message = message;
+    }
     this.handlers.onStatus();
+    this.saveAgain();
+  }
+
+  private saveAgain(): void {
+    clearTimeout(this.retry);
+    const seconds = kRetryDelays[Math.min(this.failures++, kRetryDelays.length - 1)]!;
+    this.retry = setTimeout(() => void this.save(), 1000 * seconds);
   }
 
   private async saveFile(file: SourceFile): Promise<void> {
     const text = this.textOf(file);
-    if (text === file.base) {
+    if (text === file.base && file.hash !== "") {
       file.status = "saved";
+      file.message = "";
       this.handlers.onStatus();
       return;
     }
@@ -388,6 +419,7 @@ export class Workspace {
       file.hash = saved.hash;
       file.base = text;
       file.message = "";
+      this.failures = 0;
       if (file.status === "saving") file.status = "saved";
       this.handlers.onStatus();
       this.handlers.onSaved(file);
@@ -399,9 +431,10 @@ export class Workspace {
         return;
       }
       file.status = "failed";
+      if (file.message !== failure.message) this.handlers.notify(`${file.path}: ${failure.message}`, "error");
       file.message = failure.message;
-      this.handlers.notify(`${file.path}: ${failure.message}`, "error");
       this.handlers.onStatus();
+      this.saveAgain();
     }
   }
 
@@ -425,10 +458,19 @@ export class Workspace {
       if (failure.status === 404) {
         // It was deleted: the next edit writes it again.
         file.hash = "";
-        file.base = "";
         if (file.status === "changed") await this.saveFile(file);
+        else if (file.status === "saved") {
+          file.status = "missing";
+          file.message = `${file.path} was deleted on disk; the next edit or Ctrl+S writes it again`;
+          this.handlers.onStatus();
+        }
       }
       return;
+    }
+    if (file.status === "missing") {
+      file.status = this.textOf(file) === file.base ? "saved" : "changed";
+      file.message = "";
+      this.handlers.onStatus();
     }
     if (disk.hash === file.hash) return;
     const ours = this.textOf(file);

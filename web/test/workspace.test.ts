@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files of the open program: what is saved, what is discarded, and what the editors show then.
 import assert from "node:assert/strict";
-import { beforeEach, test } from "node:test";
+import { beforeEach, mock, test } from "node:test";
 import type { ProgramText } from "../src/protocol";
 import { Workspace } from "../src/workspace";
 
@@ -32,10 +32,13 @@ globalThis.fetch = (async (address: string, init: RequestInit = {}) => {
   if (method === "PUT") {
     if (refusal) return Response.json({ error: refusal.error }, { status: refusal.status });
     const expected = new Headers(init.headers).get("If-Match")?.replaceAll('"', "");
-    if (expected !== hashOf(disk.get(path)!)) return Response.json({ error: "other content" }, { status: 412 });
+    const before = disk.get(path);
+    if (before === undefined ? expected !== undefined : expected !== hashOf(before)) return Response.json({ error: "other content" }, { status: 412 });
     disk.set(path, String(init.body));
     return Response.json({ path, hash: hashOf(disk.get(path)!), size: disk.get(path)!.length });
   }
+  if (refusal) return Response.json({ error: refusal.error }, { status: refusal.status });
+  if (path === "/api/files") return Response.json({ files: [...disk].map(([name, text]) => ({ path: name, size: text.length, modified: text.length })) });
   const text = disk.get(path);
   if (text === undefined) return Response.json({ error: "not found" }, { status: 404 });
   return new Response(text, { headers: { ETag: `"${hashOf(text)}"` } });
@@ -117,4 +120,83 @@ test("a version that conflicts with the disk is discarded, and the next edit kee
   workspace.setText(scene, "# scene\n[camera]\n");
   await workspace.finish();
   assert.match(disk.get("mine/a.scene.toml")!, /# on disk/);
+});
+
+test("a save that failed is repeated with longer pauses, reported once, and stops when it succeeds", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  try {
+    const { workspace, messages } = opened();
+    const scene = workspace.files[1]!;
+    const tries = () => requests.filter((request) => request.startsWith("PUT")).length;
+    // The save and what it waits for.
+    const elapse = async (seconds: number) => {
+      mock.timers.tick(1000 * seconds);
+      for (let i = 0; i < 20; ++i) await new Promise((resolve) => setImmediate(resolve));
+    };
+    refusal = { status: 500, error: "the disk is full" };
+    workspace.setText(scene, "# edited\n");
+    await elapse(0.1);
+    assert.equal(workspace.status, "failed");
+    assert.equal(scene.message, "the disk is full");
+    assert.equal(tries(), 1);
+    for (const [seconds, count] of [[0.9, 1], [0.2, 2], [1.5, 2], [0.6, 3], [4.1, 4]] as const) {
+      await elapse(seconds);
+      assert.equal(tries(), count, `after ${seconds} s`);
+    }
+    assert.deepEqual(messages, ["mine/a.scene.toml: the disk is full"]);
+    refusal = undefined;
+    await elapse(8.1);
+    assert.equal(workspace.status, "saved");
+    assert.equal(scene.message, "");
+    assert.equal(disk.get("mine/a.scene.toml"), "# edited\n");
+    const count = tries();
+    await elapse(100);
+    assert.equal(tries(), count);
+  } finally {
+    mock.timers.reset();
+  }
+});
+
+test("a file that was deleted on disk is not shown as saved, and the next edit or Ctrl+S writes it again", async () => {
+  const { workspace } = opened();
+  const [program, scene] = workspace.files;
+  await workspace.refresh();
+  assert.equal(workspace.status, "saved");
+  disk.clear();
+  await workspace.refresh();
+  assert.equal(workspace.status, "missing");
+  assert.match(program!.message, /mine\/a\.rt\.glsl was deleted on disk/);
+  assert.equal(workspace.textOf(program!), kLecture, "the editors keep the text");
+  await workspace.save();
+  assert.equal(disk.size, 0, "leaving the program does not write what the user has deleted");
+  workspace.setText(scene!, "# edited\n");
+  await workspace.finish();
+  assert.equal(disk.get("mine/a.scene.toml"), "# edited\n");
+  assert.equal(workspace.status, "missing", "the other file is not on disk");
+  await workspace.save({ missing: true });
+  assert.equal(workspace.status, "saved");
+  assert.equal(disk.get("mine/a.rt.glsl"), kLecture);
+});
+
+test("a deleted file that another program writes again is read", async () => {
+  const { workspace } = opened();
+  const scene = workspace.files[1]!;
+  disk.delete("mine/a.scene.toml");
+  await workspace.refresh();
+  assert.equal(workspace.status, "missing");
+  disk.set("mine/a.scene.toml", "# restored by git\n");
+  await workspace.refresh();
+  assert.equal(workspace.status, "saved");
+  assert.equal(workspace.textOf(scene), "# restored by git\n");
+});
+
+test("a project that cannot be read is not shown as saved", async () => {
+  const { workspace } = opened();
+  refusal = { status: 500, error: "the folder cannot be read" };
+  await workspace.refresh();
+  assert.equal(workspace.status, "missing");
+  assert.equal(workspace.files[0]!.message, "the folder cannot be read");
+  refusal = undefined;
+  await workspace.refresh();
+  assert.equal(workspace.status, "saved");
 });
