@@ -87,24 +87,33 @@ double RenderResult::raysPerSecond() const {
 std::vector<std::string> resultWarnings(const RenderResult& result) {
   std::vector<std::string> warnings;
   if (result.targetMissed && !result.interrupted) warnings.push_back(targetMissedText(result));
+  for (const Diagnostic& finding : runFindings(result))
+    warnings.push_back(finding.text +
+                       (finding.id.empty() ? "" : fmt::format("; see 'quintet explain {}'", finding.id)));
+  return warnings;
+}
+
+std::vector<Diagnostic> runFindings(const RenderResult& result) {
+  std::vector<Diagnostic> findings;
   if (const std::uint64_t count = result.provenance.droppedSamples; count > 0)
-    warnings.push_back(fmt::format("{} {} not finite and {} omitted", counted(count, "sample"),
-                                   nounFor(count, "was", "were"), nounFor(count, "is", "are")) +
-                       pixelText(count, result.provenance.firstDroppedSample));
+    findings.push_back({Severity::warning, "", 0, 0, "",
+                        fmt::format("{} {} not finite and {} omitted", counted(count, "sample"),
+                                    nounFor(count, "was", "were"), nounFor(count, "is", "are")) +
+                            pixelText(count, result.provenance.firstDroppedSample)});
   for (const render::NotFinitePixels& pixels : result.notFinite)
-    warnings.push_back(fmt::format("{} of the output '{}' {}", counted(pixels.count, "pixel"), pixels.output,
-                                   result.accumulatesFrames
-                                       ? nounFor(pixels.count, "was", "were") + " not finite in at least one frame"
-                                       : nounFor(pixels.count, "is", "are") + " not finite") +
-                       pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) +
-                       "; see 'quintet explain Q002'");
+    findings.push_back({Severity::warning, "", 0, 0, "Q002",
+                        fmt::format("{} of the output '{}' {}", counted(pixels.count, "pixel"), pixels.output,
+                                    result.accumulatesFrames
+                                        ? nounFor(pixels.count, "was", "were") + " not finite in at least one frame"
+                                        : nounFor(pixels.count, "is", "are") + " not finite") +
+                            pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y})});
   if (result.skippedTraces > 0) {
     const std::string were = nounFor(result.skippedTraces, "was", "were");
-    warnings.push_back(fmt::format(
-        "{} {} deeper than the recursion depth {} of the pipeline and {} not executed; see 'quintet explain Q003'",
-        counted(result.skippedTraces, "trace"), were, result.recursionDepth, were));
+    findings.push_back({Severity::warning, "", 0, 0, "Q003",
+                        fmt::format("{} {} deeper than the recursion depth {} of the pipeline and {} not executed",
+                                    counted(result.skippedTraces, "trace"), were, result.recursionDepth, were)});
   }
-  return warnings;
+  return findings;
 }
 
 void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<render::NotFinitePixels> notFinite) {

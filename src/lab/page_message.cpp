@@ -147,7 +147,8 @@ PageCommand parseCommand(const Json& object) {
   } else if (name == "pause") {
     command = PauseSession{fields.findFlag("on").value_or(true)};
   } else if (name == "advance") {
-    command = AdvanceFrames{fields.has("frames") ? fields.count("frames") : 1};
+    command = AdvanceFrames{fields.has("frames") ? fields.count("frames") : 1,
+                            fields.has("until") ? fields.count("until") : 0};
   } else if (name == "pick") {
     command = PickPixel{parsePixel(fields)};
   } else if (name == "value") {
@@ -157,6 +158,8 @@ PageCommand parseCommand(const Json& object) {
     command = ExplainSample{pixel, fields.has("sample") ? fields.index("sample") : 0};
   } else if (name == "graph") {
     command = DescribeGraph{};
+  } else if (name == "instrument") {
+    command = InstrumentProgram{};
   } else if (name == "exr") {
     command = ExportExr{};
   } else if (name == "video") {

@@ -45,9 +45,10 @@ struct ImageReceived {
 struct PauseSession {
   bool on = true;
 };
-// Pauses, and renders this many further frames or batches of samples.
+// Pauses, and renders this many further frames or batches of samples; or until there are `until`, also after later changes.
 struct AdvanceFrames {
   std::uint32_t count = 1;
+  std::uint32_t until = 0;  // 0: `count` decides
 };
 struct PickPixel {
   uvec2 pixel{0};
@@ -62,7 +63,8 @@ struct ExplainSample {
   std::uint32_t sample = 0;
 };
 struct DescribeGraph {};
-struct ExportExr {};  // the image as OpenEXR, 32-bit floats
+struct InstrumentProgram {};  // a short render with run-time checks
+struct ExportExr {};          // the image as OpenEXR, 32-bit floats
 // A video of frames: of a program that counts them, of an animated scene, or of a turn of the camera.
 struct RenderVideo {
   std::uint32_t frames = 1;  // up to kMaxVideoFrames
@@ -77,9 +79,9 @@ struct ReadFilePart {
 };
 struct RestartWorker {};  // handled by the server
 
-using PageCommand =
-    std::variant<OpenSession, job::interactive::Command, ImageReceived, PauseSession, AdvanceFrames, PickPixel,
-                 ReadValue, ExplainSample, DescribeGraph, ExportExr, RenderVideo, ReadFilePart, RestartWorker>;
+using PageCommand = std::variant<OpenSession, job::interactive::Command, ImageReceived, PauseSession, AdvanceFrames,
+                                 PickPixel, ReadValue, ExplainSample, DescribeGraph, InstrumentProgram, ExportExr,
+                                 RenderVideo, ReadFilePart, RestartWorker>;
 
 struct PageMessage {
   PageCommand command;

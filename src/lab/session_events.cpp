@@ -88,7 +88,7 @@ std::string openedJson(const Session& session, const std::string& program, const
                  {"lastFrame", session.lastFrame()}});
 }
 
-std::string stateJson(const Session& session, const std::string& program, bool paused) {
+std::string stateJson(const Session& session, const std::string& program, bool paused, bool still) {
   const job::interactive::SessionState& state = session.state();
   return lineOf(
       {{"event", "state"},
@@ -102,6 +102,7 @@ std::string stateJson(const Session& session, const std::string& program, bool p
        {"samples", state.samples},
        {"frame", shortest(state.frame)},
        {"frames", session.program().accumulation == program::Accumulation::program},
+       {"still", still},
        {"paused", paused},
        {"camera", cameraJson(session)},
        {"environment",

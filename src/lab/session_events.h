@@ -31,7 +31,8 @@ inline constexpr std::size_t kMaxListedNames = 1000;
 std::string openingJson(std::uint32_t number);
 std::string openedJson(const job::interactive::Session& session, const std::string& program, const std::string& scene,
                        const std::string& device);
-std::string stateJson(const job::interactive::Session& session, const std::string& program, bool paused);
+// `still`: all frames of a program that counts them are equal.
+std::string stateJson(const job::interactive::Session& session, const std::string& program, bool paused, bool still);
 std::string diagnosticsJson(const std::vector<Diagnostic>& diagnostics, bool outdated);
 std::string statisticsJson(const Statistics& statistics);
 std::string imageJson(const job::interactive::ImageUpdated& image, std::uint32_t number);

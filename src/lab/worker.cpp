@@ -36,6 +36,7 @@
 #include "io/jpeg_encoder.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
+#include "job/instrumented_run.h"
 #include "job/interactive/event_json.h"
 #include "job/interactive/session.h"
 #include "job/resolve.h"
@@ -56,6 +57,7 @@
 #include "lab/worker_process.h"
 #include "output/plan.h"
 #include "output/write.h"
+#include "program/frame_dependence.h"
 #include "program/load.h"
 
 namespace quintet::lab {
@@ -287,6 +289,7 @@ class Worker : public job::Observer {
     interactive::Session& session = requireSession();
     checkFiles(command);
     if (!std::holds_alternative<interactive::EndDrag>(command)) lastCommand_ = clock_.seconds();
+    if (std::holds_alternative<interactive::Rewind>(command)) until_ = 0;
     session.apply(command);
   }
 
@@ -294,14 +297,33 @@ class Worker : public job::Observer {
     confirmed_ = std::clamp(command.image, confirmed_, sent_);
   }
 
-  void execute(const PauseSession& command, const std::string& /*id*/) { paused_ = command.on; }
+  void execute(const PauseSession& command, const std::string& /*id*/) {
+    paused_ = command.on;
+    until_ = 0;
+  }
   void execute(const DescribeGraph& /*command*/, const std::string& id) { describeGraph(id); }
+  // Other commands wait. It uses the device between two calls of the session, and keeps nothing of it.
+  void execute(const InstrumentProgram& /*command*/, const std::string& /*id*/) {
+    const interactive::Session& session = requireSession();
+    job::RenderRequest request = interactive::withState({}, session.state()).render;
+    request.size = {};
+    request.limits = {};
+    request.launchTimeout = settings_.defaults.timeout;
+    instrumented_ = job::runInstrumented(*engine_, session.program(), session.scene(), request,
+                                         [this](const Diagnostic& diagnostic) { deviceHung(diagnostic); });
+    sendDiagnostics(session.diagnostics(), false);
+  }
+
   void execute(const RestartWorker& /*command*/, const std::string& /*id*/) {}  // by the server
 
   void execute(const AdvanceFrames& command, const std::string& /*id*/) {
     requireSession();
     paused_ = true;
-    batches_ += command.count;
+    until_ = command.until;
+    if (until_ > 0 || still_)
+      batches_ = 0;
+    else
+      batches_ += command.count;
   }
 
   void execute(const PickPixel& command, const std::string& id) {
@@ -378,7 +400,7 @@ class Worker : public job::Observer {
       function();
       return true;
     } catch (const ProgramError& error) {
-      send(diagnosticsJson(error.diagnostics(), session_ != nullptr));
+      sendDiagnostics(error.diagnostics(), session_ != nullptr);
       return fail(error);
     } catch (const TimeoutError& error) {  // deviceHung() has ended the process
       return fail(error);
@@ -448,10 +470,26 @@ class Worker : public job::Observer {
         *engine_, std::move(request), [this] { return clock_.seconds(); }, *this);
     opened_ = command;
     showed_.clear();
-    send(openedJson(*session_, opened_.program, opened_.scene, engine_->context().info().name));
-    send(diagnosticsJson(session_->diagnostics(), false));
-    graphOutdated_ = true;
+    reportOpened();
     applyDisplay(command);
+  }
+
+  // The program that the session shows, after it was opened or loaded again.
+  void reportOpened() {
+    still_ = countsFrames() && !session_->isAnimated() && !program::framesCanDiffer(session_->program());
+    findings_.clear();
+    instrumented_.clear();
+    send(openedJson(*session_, opened_.program, opened_.scene, engine_->context().info().name));
+    sendDiagnostics(session_->diagnostics(), false);
+    graphOutdated_ = true;
+  }
+
+  // Problems of the program, with what its images have shown.
+  void sendDiagnostics(std::vector<Diagnostic> diagnostics, bool outdated) {
+    rejected_ = hasErrors(diagnostics);
+    for (const auto* found : {&findings_, &instrumented_})
+      if (!rejected_) diagnostics.insert(diagnostics.end(), found->begin(), found->end());
+    send(diagnosticsJson(diagnostics, outdated));
   }
 
   // Those that the program has and accepts: a page can have values for an older version.
@@ -530,8 +568,11 @@ class Worker : public job::Observer {
 
   // ---- Rendering
 
-  // Paused, and the image shows the last change.
-  bool isResting() const { return paused_ && batches_ == 0 && progress_.factor == 1 && progress_.samples > 0; }
+  // The image shows the last change, and no other frame is wanted: it is paused, or all frames are equal.
+  bool isResting() {
+    const bool isShown = progress_.factor == 1 && progress_.samples > 0;
+    return isShown && (still_ || (paused_ && batches_ == 0 && progress_.samples >= until_)) && !session_->hasChange();
+  }
 
   void work() {
     if (!isResting()) {
@@ -561,10 +602,11 @@ class Worker : public job::Observer {
       if (const auto* image = std::get_if<interactive::ImageUpdated>(&event)) {
         if (image->samples != progress_.samples && image->factor == 1 && batches_ > 0) --batches_;
         progress_ = *image;
+        if (still_ && progress_.factor == 1) progress_.complete = true;
         imagePending_ = true;
         values_.reset();
       } else if (const auto* found = std::get_if<interactive::DiagnosticsFound>(&event)) {
-        send(diagnosticsJson(found->diagnostics, hasErrors(found->diagnostics)));
+        sendDiagnostics(found->diagnostics, hasErrors(found->diagnostics));
         if (hasErrors(found->diagnostics))
           describeRejected(loadedName(opened_));
         else
@@ -573,14 +615,11 @@ class Worker : public job::Observer {
         if (std::holds_alternative<interactive::Restarted>(event)) {
           progress_ = {};
           imagePending_ = false;
+          if (!rejected_ && !std::exchange(instrumented_, {}).empty()) sendDiagnostics(session_->diagnostics(), false);
         }
         send(interactive::eventJson(event));
       }
-      if (std::holds_alternative<interactive::ProgramReloaded>(event)) {
-        send(openedJson(*session_, opened_.program, opened_.scene, engine_->context().info().name));
-        send(diagnosticsJson(session_->diagnostics(), false));
-        graphOutdated_ = true;
-      }
+      if (std::holds_alternative<interactive::ProgramReloaded>(event)) reportOpened();
     }
   }
 
@@ -618,11 +657,19 @@ class Worker : public job::Observer {
     Statistics statistics{.samples = progress_.samples, .frames = countsFrames(), .seconds = progress_.seconds};
     if (progress_.seconds > 0)
       statistics.raysPerSecond = static_cast<double>(session_->rays().rays) / progress_.seconds;
-    if (!statistics.frames) {
-      const render::ErrorEstimate error = session_->result().error;
-      if (error.known()) statistics.error = error.upper;
-    }
+    const job::RenderResult result = session_->result();
+    if (!statistics.frames && result.error.known()) statistics.error = result.error.upper;
     send(statisticsJson(statistics));
+    reportFindings(job::runFindings(result));
+  }
+
+  // Counts grow with the frames: a list of the same problems is sent again only for the last image.
+  void reportFindings(std::vector<Diagnostic> findings) {
+    const auto areEqual = [&](auto member) { return std::ranges::equal(findings, findings_, {}, member, member); };
+    const bool isLast = progress_.complete || isResting();
+    if (rejected_ || (areEqual(&Diagnostic::id) && (!isLast || areEqual(&Diagnostic::text)))) return;
+    findings_ = std::move(findings);
+    sendDiagnostics(session_->diagnostics(), false);
   }
 
   // The graph of a program with a scene's facts, as an event. The check reads the program as it is compiled for the device,
@@ -683,7 +730,7 @@ class Worker : public job::Observer {
 
   void reportState() {
     if (!session_) return;
-    std::string state = stateJson(*session_, opened_.program, paused_);
+    std::string state = stateJson(*session_, opened_.program, paused_, still_);
     if (state == showed_) return;
     send(state);
     showed_ = std::move(state);
@@ -719,11 +766,16 @@ class Worker : public job::Observer {
   OpenSession opened_;                // of the session
   std::optional<OpenSession> retry_;  // failed; repeated when one of the files is saved
   std::optional<job::SourceWatcher> retryWatcher_;
-  bool retryDue_ = false;            // a file was saved before it was watched
-  double loadTime_ = 0;              // of the last attempt to load the program, seconds since 1970
-  std::optional<std::string> hold_;  // message of Control::hold
+  bool retryDue_ = false;                 // a file was saved before it was watched
+  double loadTime_ = 0;                   // of the last attempt to load the program, seconds since 1970
+  std::optional<std::string> hold_;       // message of Control::hold
+  bool still_ = false;                    // all frames of the program are equal
+  std::vector<Diagnostic> findings_;      // of the images of the program
+  std::vector<Diagnostic> instrumented_;  // of the run-time checks since the last restart
+  bool rejected_ = false;                 // the last diagnostics have errors
   bool paused_ = false;
   std::uint64_t batches_ = 0;  // to render while paused
+  std::uint64_t until_ = 0;    // frames to render while paused; 0: batches_ decides
   std::uint64_t restarts_ = 0;
   bool graphOutdated_ = false;
   std::optional<WantedGraph> wantedGraph_;

@@ -169,7 +169,164 @@ TEST_F(LabSession, AnswersCommands) {
   EXPECT_EQ(small.header.size, uvec2(32, 18));
 }
 
+// Each frame has its number as red, in steps of 1/255.
+constexpr const char* kCount = R"(void main() { /**** RAY GENERATION SHADER ****/
+  gsnSetPixel(vec4(float(frameID) / 255.0, float(gl_LaunchIDEXT.x) / 255.0, 0.0, 1.0));
+}
+)";
+
+TEST_F(LabSession, RendersOneFrameIfAllAreEqual) {
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  EXPECT_EQ(page.waitFor("state").at("still"), true);
+  const auto isComplete = [](const lab::ImageHeader& header) { return header.complete && isLossless(header); };
+  EXPECT_EQ(page.waitForImage(isComplete).header.samples, 1u);
+  // Nothing is rendered until something changes, also not if the page asks for a frame.
+  page.send({{"do", "advance"}, {"frames", 3}});
+  page.send({{"do", "pause"}, {"on", false}});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  page.send({{"do", "pause"}, {"on", false}, {"id", 2}});
+  std::size_t images = 0;
+  page.waitFor([&](const Json& event) {
+    images += event.value("event", "") == "image";
+    return event.value("event", "") == "done" && event.at("id") == 2;
+  });
+  EXPECT_EQ(images, 0u);
+  // Changes of parameters and of the display.
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {0, 0, 1}}});
+  page.waitFor("restarted");
+  EXPECT_THAT(colorOf(page.waitForImage(isComplete)), ::testing::ElementsAre(0, 0, 255));
+  page.send({{"do", "exposure"}, {"stops", -1}});
+  EXPECT_LT(colorOf(page.waitForImage(isComplete))[2], 200);
+  page.send({{"do", "exposure"}, {"stops", 0}});
+  // An edit that uses the number of the frame.
+  save(kCount);
+  page.waitFor("reloaded");
+  EXPECT_EQ(page.waitFor("state").at("still"), false);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+}
+
+TEST_F(LabSession, ShowsAFrameAlsoAfterAChange) {
+  save("uniform float shade;  // defaultval=\"0\"\n" + replaced(kCount, "255.0, 0.0, 1.0", "255.0, shade, 1.0"));
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+  const auto isAt = [](std::uint32_t frames) {
+    return [frames](const lab::ImageHeader& header) { return header.samples >= frames && isLossless(header); };
+  };
+  for (const std::uint32_t frames : {1u, 6u}) {
+    page.send({{"do", "pause"}, {"on", true}});
+    page.send({{"do", "rewind"}, {"id", 2}});
+    page.send({{"do", "advance"}, {"until", frames}});
+    done(page, 2);
+    const ReceivedImage image = page.waitForImage(isAt(frames));
+    EXPECT_EQ(image.header.samples, frames);
+    EXPECT_EQ(colorOf(image)[0], static_cast<int>(frames) - 1);
+  }
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", 1}});
+  page.waitFor("restarted");
+  const ReceivedImage changed = page.waitForImage(isAt(6));
+  EXPECT_EQ(changed.header.samples, 6u);
+  EXPECT_EQ(colorOf(changed)[2], 255);
+}
+
+TEST_F(LabSession, ShowsAnEditWhileFramesArePaused) {
+  save(kCount);
+  const LabProcess server = start();
+  PageClient page(server);
+  Json endlessFrames = open();
+  endlessFrames.erase("samples");
+  page.send(endlessFrames);
+  page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && header.samples > 3; });
+  page.send({{"do", "pause"}, {"id", 2}});
+  done(page, 2);
+  page.waitForImage(isLossless);
+  save(replaced(kCount, "float(gl_LaunchIDEXT.x) / 255.0, 0.0, 1.0", "0.0, 1.0, 1.0"));
+  page.waitFor("reloaded");
+  const ReceivedImage first =
+      page.waitForImage([](const lab::ImageHeader& header) { return header.factor == 1 && isLossless(header); });
+  EXPECT_EQ(first.header.samples, 1u);
+  EXPECT_THAT(colorOf(first), ::testing::ElementsAre(0, 0, 255));
+}
+
+TEST_F(LabSession, ReportsWhatImagesShow) {
+  const std::string notFinite = replaced(kPlain, "shade * payload.color", "shade / shade.x");
+  save(notFinite);
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  const auto hasId = [](const std::string& id) {
+    return [id](const Json& event) {
+      return event.value("event", "") == "diagnostics" && !event.at("diagnostics").empty() &&
+             event.at("diagnostics").back().value("id", "") == id;
+    };
+  };
+  const Json found = page.waitFor(hasId("Q002"));
+  EXPECT_EQ(found.at("outdated"), false);
+  EXPECT_EQ(found.at("diagnostics").back().at("severity"), "warning");
+  EXPECT_EQ(found.at("diagnostics").back().at("text"),
+            "2304 pixels of the output 'image' were not finite in at least one frame; the first is at pixel (0, 0), "
+            "counted from the top left corner");
+  EXPECT_THAT(found.at("diagnostics").back().at("why").get<std::string>(), HasSubstr("NaN"));
+  const auto isEmpty = [](const Json& event) {
+    return event.value("event", "") == "diagnostics" && event.at("diagnostics").empty();
+  };
+  // A parameter repairs it, and brings it back.
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {1, 1, 1}}});
+  page.waitFor(isEmpty);
+  page.send({{"do", "undo"}});
+  page.waitFor(hasId("Q002"));
+  // An error replaces it, and the version before the error has it again.
+  save(replaced(notFinite, "shade / shade.x", "shade / nothing"));
+  page.waitFor(hasId("GLSL"));
+  save(kPlain);
+  page.waitFor(isEmpty);
+}
+
+TEST_F(LabSession, ChecksAtRunTime) {
+  save(replaced(kPlain, "shade * payload.color", "shade / shade.x"));
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  page.waitForImage(isLossless);
+  page.send({{"do", "instrument"}, {"id", 2}});
+  const Json found = page.waitFor([](const Json& event) {
+    return event.value("event", "") == "diagnostics" && !event.at("diagnostics").empty() &&
+           event.at("diagnostics").back().value("file", "") == "mine/mine.rt.glsl";
+  });
+  EXPECT_EQ(found.at("diagnostics").back().at("id"), "Q002");
+  EXPECT_EQ(found.at("diagnostics").back().at("line"), 10);
+  done(page, 2);
+  // The findings are of the values that were shown.
+  page.send({{"do", "set"}, {"parameter", "shade"}, {"value", {1, 1, 1}}});
+  page.waitFor(
+      [](const Json& event) { return event.value("event", "") == "diagnostics" && event.at("diagnostics").empty(); });
+}
+
+TEST_F(LabSession, ReportsTracesThatAreTooDeep) {
+  save("// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 2\"\n" +
+       replaced(kPlain, "payload.color = vec3(1.0);",
+                "payload.color.x += 1.0;\n"
+                "  if (payload.color.x < 5.0) traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, "
+                "vec3(0.0, 100.0, 0.0), 0.001, vec3(0.0, 1.0, 0.0), 1000.0, 0);"));
+  const LabProcess server = start();
+  PageClient page(server);
+  page.send(open());
+  const Json found = page.waitFor([](const Json& event) {
+    return event.value("event", "") == "diagnostics" && !event.at("diagnostics").empty() &&
+           event.at("diagnostics").back().value("id", "") == "Q003";
+  });
+  EXPECT_THAT(found.at("diagnostics").back().at("text").get<std::string>(), HasSubstr("recursion depth 2"));
+}
+
 TEST_F(LabSession, PausesAndAdvancesFrames) {
+  save(kCount);
   const LabProcess server = start();
   PageClient page(server);
   Json endlessFrames = open();
@@ -199,12 +356,6 @@ TEST_F(LabSession, PausesAndAdvancesFrames) {
   });
   EXPECT_EQ(images, 0u);
 }
-
-// Each frame has its number as red, in steps of 1/255.
-constexpr const char* kCount = R"(void main() { /**** RAY GENERATION SHADER ****/
-  gsnSetPixel(vec4(float(frameID) / 255.0, float(gl_LaunchIDEXT.x) / 255.0, 0.0, 1.0));
-}
-)";
 
 TEST_F(LabSession, RewindsToTheFirstFrameInTheSameProcess) {
   save(kCount);
@@ -352,6 +503,7 @@ TEST_F(LabSession, MeasuresBlocksOfPixels) {
 }
 
 TEST_F(LabSession, ReportsStatisticsWhileFramesPlay) {
+  save(kCount);
   const LabProcess server = start();
   PageClient page(server);
   Json endlessFrames = open();

@@ -25,6 +25,17 @@ export function hasPage(id: string): boolean {
   return /^Q\d{3}$/.test(id);
 }
 
+// Found by rendering, not in the sources.
+export function isRunFinding(diagnostic: Diagnostic): boolean {
+  return diagnostic.severity === "warning" && diagnostic.file === "";
+}
+
+// The pixel that the text of a finding names, from the top left corner.
+export function pixelOf(diagnostic: Diagnostic): { x: number; y: number } | undefined {
+  const pixel = isRunFinding(diagnostic) ? /\bat pixel \((\d+), (\d+)\)/.exec(diagnostic.text) : null;
+  return pixel ? { x: Number(pixel[1]), y: Number(pixel[2]) } : undefined;
+}
+
 export function countText(diagnostics: readonly Diagnostic[]): string {
   const parts: string[] = [];
   for (const severity of ["error", "warning", "note"] as const) {

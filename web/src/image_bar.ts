@@ -15,9 +15,10 @@ export function percentText(value: number): string {
   return `${percent >= 10 ? percent.toFixed(0) : percent.toPrecision(2)} %`;
 }
 
-// "12 of 64 samples · 3.4 M rays/s · error ≤ 2 % · 640 × 360", or "Frame 12 · 24 frames/s · 640 × 360": programs that count
+// "Frame 0 · all frames are equal · 640 × 360" if only one is rendered; "12 of 64 samples · 3.4 M rays/s · error ≤ 2 % · 640 × 360", or "Frame 12 · 24 frames/s · 640 × 360": programs that count
 // frames do not count rays.
 export function factsText(state: SessionState, samples: number, statistics: Statistics | undefined): string {
+  if (state.frames && state.still) return `Frame 0 · all frames are equal · ${state.width} × ${state.height}`;
   const parts = [state.frames ? `Frame ${Math.max(0, samples - 1)}` : `${samples} of ${state.samples} samples`];
   if (state.frames && statistics && statistics.seconds > 0) parts.push(`${Number((statistics.samples / statistics.seconds).toPrecision(2))} frames/s`);
   if (statistics && statistics.raysPerSecond > 0) parts.push(`${raysText(statistics.raysPerSecond)} rays/s`);
@@ -84,9 +85,10 @@ export class ImageBar {
 
   showFacts(): void {
     const state = this.session.state;
-    this.step.hidden = this.first.hidden = !state?.frames;
+    const plays = state?.frames === true && !state.still;
+    this.step.hidden = this.first.hidden = !plays;
     this.output.hidden = this.output.options.length === 0;
-    this.play.hidden = !state;
+    this.play.hidden = !state || (state.frames && !plays);
     const playing = state?.paused === false;
     if (this.play.dataset["icon"] !== String(playing)) {
       this.play.dataset["icon"] = String(playing);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The list of problems of the program: location, text, reason and fix, with a button for the explanation.
-import { type Diagnostic, hasPage } from "./diagnostic";
+import { type Diagnostic, hasPage, isRunFinding, pixelOf } from "./diagnostic";
 import { h, replace } from "./dom";
 
 export interface ProblemsHost {
   open: (file: string, line: number, column: number) => void;
   explain: (id: string) => void;
   inDiagram: (diagnostic: Diagnostic) => void;
+  showPixel: (x: number, y: number) => void;
 }
 
 const kOrder = { error: 0, warning: 1, note: 2 };
@@ -36,6 +37,7 @@ export class ProblemsPanel {
   }
 
   private row(diagnostic: Diagnostic): HTMLElement {
+    const pixel = pixelOf(diagnostic);
     return h(
       "li",
       { class: `problem ${diagnostic.severity}` },
@@ -58,7 +60,8 @@ export class ProblemsPanel {
         "div",
         { class: "problem-actions" },
         hasPage(diagnostic.id) ? h("button", { type: "button", class: "small", onclick: () => this.host.explain(diagnostic.id) }, `Explain ${diagnostic.id}`) : h("span", { class: "id" }, diagnostic.id),
-        hasPage(diagnostic.id) && h("button", { type: "button", class: "small", title: "Show it in the pipeline diagram", onclick: () => this.host.inDiagram(diagnostic) }, "Diagram"),
+        pixel && h("button", { type: "button", class: "small", title: "Show the rays of the first pixel", onclick: () => this.host.showPixel(pixel.x, pixel.y) }, "Pixel"),
+        hasPage(diagnostic.id) && !isRunFinding(diagnostic) && h("button", { type: "button", class: "small", title: "Show it in the pipeline diagram", onclick: () => this.host.inDiagram(diagnostic) }, "Diagram"),
       ),
     );
   }

@@ -101,6 +101,7 @@ export interface SessionState {
   samples: number;
   frame: number;
   frames: boolean; // the program counts frames
+  still: boolean; // all of them are equal, so that one is rendered
   paused: boolean;
   camera: Camera | null;
   canUndo: boolean;

@@ -32,6 +32,9 @@ export interface SessionHandlers {
 // Commands that are sent often, or that have no answer.
 const kSilent: ReadonlySet<string> = new Set(["received", "restart", "orbit", "pan", "zoom", "fly", "endDrag"]);
 
+// Events of a worker that has read the program: it no longer waits for a save.
+const kOfRunningWorker: ReadonlySet<EventName> = new Set(["stage", "opened", "diagnostics", "reloaded"]);
+
 // Events about the open program.
 const kOfProgram: ReadonlySet<EventName> = new Set(["stage", "opened", "state", "diagnostics", "graph", "statistics", "restarted", "reloaded", "printed", "error"]);
 
@@ -52,6 +55,8 @@ export class Session {
   private scheduled = false;
   private opens = 0; // number of the last `open`
   private opening = 0; // the one that the worker executes, or has executed
+  private hidden = false; // nobody sees the page
+  private pausedWhileHidden = false; // the session continues when the page is shown
 
   constructor(private readonly handlers: SessionHandlers) {
     this.link = new Connection({
@@ -145,6 +150,23 @@ export class Session {
     });
   }
 
+  // A hidden page does not render.
+  setHidden(hidden: boolean): void {
+    this.hidden = hidden;
+    this.pauseIfHidden();
+  }
+
+  private pauseIfHidden(): void {
+    if (!this.state || !this.link.isOpen) return;
+    if (this.hidden && !this.state.paused && !this.state.still && !this.pausedWhileHidden) {
+      this.pausedWhileHidden = true;
+      this.send({ do: "pause", on: true });
+    } else if (!this.hidden && this.pausedWhileHidden) {
+      this.pausedWhileHidden = false;
+      this.send({ do: "pause", on: false });
+    }
+  }
+
   private withState(request: OpenRequest): OpenRequest {
     const state = this.state;
     if (!state) return request;
@@ -191,13 +213,21 @@ export class Session {
   private onEvent(event: ServerEvent): void {
     const { handlers } = this;
     if (event.event === "opening") this.opening = event.number;
+    if (this.worker?.state === "waiting" && kOfRunningWorker.has(event.event) && event.id === undefined) {
+      this.worker = { ...this.worker, state: "started", message: "" };
+      this.cause = undefined;
+      handlers.onStatus();
+    }
     if (this.isStale && kOfProgram.has(event.event) && event.id === undefined) return;
     switch (event.event) {
       case "worker":
         this.worker = { state: event.state, message: event.message, restarts: event.restarts };
         if (event.state === "crashed" || event.state === "hung") this.cause = { state: event.state, message: event.message };
         else if (event.state !== "waiting") this.cause = undefined;
-        if (event.state === "started") this.failure = "";
+        if (event.state === "started") {
+          this.failure = "";
+          this.pausedWhileHidden = false; // a new process
+        }
         // It can start again before anyone sees the state.
         if (event.state === "crashed") handlers.onMessage(`The render process crashed: ${event.message}`, "error");
         handlers.onStatus();
@@ -214,6 +244,7 @@ export class Session {
       case "state":
         this.state = event;
         handlers.onState(event);
+        this.pauseIfHidden();
         break;
       case "diagnostics":
         handlers.onDiagnostics(event.diagnostics, event.outdated === true);

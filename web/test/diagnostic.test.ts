@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { columnOffset, countText, hasPage, rangeInLine } from "../src/diagnostic";
+import { columnOffset, countText, type Diagnostic, hasPage, isRunFinding, pixelOf, rangeInLine } from "../src/diagnostic";
 
 test("columns count bytes of UTF-8", () => {
   assert.equal(columnOffset("abc", 1), 0);
@@ -28,4 +28,15 @@ test("counts by severity", () => {
 test("ids of the check have pages", () => {
   assert.ok(hasPage("Q101"));
   assert.ok(!hasPage("GLSL"));
+});
+
+test("what only an image shows has a pixel, and no location in a source", () => {
+  const diagnostic = (fields: Partial<Diagnostic>): Diagnostic => ({ severity: "warning", file: "", line: 0, column: 0, id: "Q002", text: "", ...fields });
+  const found = diagnostic({ text: "3 pixels of the output 'image' were not finite in at least one frame; the first is at pixel (34, 120), counted from the top left corner" });
+  assert.ok(isRunFinding(found));
+  assert.deepEqual(pixelOf(found), { x: 34, y: 120 });
+  assert.equal(pixelOf(diagnostic({ id: "Q003", text: "1 trace was deeper" })), undefined);
+  assert.equal(isRunFinding(diagnostic({ file: "a.rt.glsl", text: "at pixel (1, 2)" })), false);
+  assert.equal(pixelOf(diagnostic({ file: "a.rt.glsl", text: "at pixel (1, 2)" })), undefined);
+  assert.equal(isRunFinding(diagnostic({ severity: "error" })), false);
 });

@@ -119,6 +119,9 @@ class Session {
   // Until step() has something to render: 0 if it has now, infinity if the image is complete. Saves of files are not
   // included.
   double secondsUntilWork() const;
+  // The next step() has something to do besides samples: a file of the program was saved, or a command has only changed
+  // how the image is displayed.
+  bool hasChange() { return imageChanged_ || watcher_.pending(); }
 
   // The image of the latest ImageUpdated, with the current output, exposure and tone map. Valid until the next command
   // that discards samples. For display: the last bits can differ from result(). They throw Error if the last change

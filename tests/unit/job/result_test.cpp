@@ -83,6 +83,25 @@ TEST(ResultWarnings, CountPixelsThatAreNotFinite) {
   EXPECT_THAT(resultWarnings(result), IsEmpty());
 }
 
+TEST(RunFindings, HaveTheIdOfTheirPageAndNoCommand) {
+  RenderResult result = missedTarget();
+  setCounts(result, {100, 2, {5, 6}}, {{"color", 3, {34, 120}}});
+  result.skippedTraces = 1;
+  result.recursionDepth = 3;
+  const std::vector<Diagnostic> findings = runFindings(result);
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_EQ(findings[0].id, "");
+  EXPECT_THAT(findings[0].text, HasSubstr("2 samples were not finite"));
+  EXPECT_EQ(findings[1].id, "Q002");
+  EXPECT_EQ(findings[1].text,
+            "3 pixels of the output 'color' are not finite; the first is at pixel (34, 120), counted from the top left "
+            "corner");
+  EXPECT_EQ(findings[2].id, "Q003");
+  EXPECT_EQ(findings[2].text, "1 trace was deeper than the recursion depth 3 of the pipeline and was not executed");
+  for (const Diagnostic& finding : findings) EXPECT_EQ(finding.severity, Severity::warning);
+  EXPECT_THAT(resultWarnings(result).back(), HasSubstr("not executed; see 'quintet explain Q003'"));
+}
+
 TEST(ResultWarnings, AddUpFrames) {
   RenderResult sum, frame;
   setCounts(sum, {5, 1, {3, 4}}, {{"color", 2, {8, 1}}});

@@ -63,9 +63,15 @@ TEST(PageMessage, ReadsCommandsOfTheLab) {
   EXPECT_EQ(std::get<ImageReceived>(parsed(R"({"do":"received","image":3})").command).image, 3u);
   EXPECT_FALSE(std::get<PauseSession>(parsed(R"({"do":"pause","on":false})").command).on);
   EXPECT_EQ(std::get<AdvanceFrames>(parsed(R"({"do":"advance"})").command).count, 1u);
+  EXPECT_EQ(std::get<AdvanceFrames>(parsed(R"({"do":"advance"})").command).until, 0u);
+  EXPECT_EQ(std::get<AdvanceFrames>(parsed(R"({"do":"advance","until":12})").command).until, 12u);
   EXPECT_EQ(std::get<PickPixel>(parsed(R"({"do":"pick","x":1,"y":2})").command).pixel, uvec2(1, 2));
   EXPECT_EQ(std::get<ExplainSample>(parsed(R"({"do":"explain","x":1,"y":2,"sample":4})").command).sample, 4u);
   EXPECT_TRUE(std::holds_alternative<RestartWorker>(parsed(R"({"do":"restart"})").command));
+}
+
+TEST(PageMessage, ReadsRunTimeChecks) {
+  EXPECT_TRUE(std::holds_alternative<InstrumentProgram>(parsed(R"({"do":"instrument"})").command));
 }
 
 TEST(PageMessage, ReadsCommandsOfSessions) {
