@@ -3,7 +3,7 @@
 // up to date.
 import { api, type ApiError } from "./api";
 import { CameraControl } from "./camera_control";
-import type { Diagnostic } from "./diagnostic";
+import { type Diagnostic, isRunFinding } from "./diagnostic";
 import { ask, menuButton, notify } from "./dialog";
 import { h, replace } from "./dom";
 import { Downloads } from "./downloads";
@@ -11,9 +11,10 @@ import { EditorArea } from "./editor_pane";
 import { showHelp } from "./help";
 import { ImageBar } from "./image_bar";
 import { ImageView } from "./image_view";
+import { type LessonCommand, parameterValues, type RunCommand } from "./lesson_command";
 import { LessonPanel } from "./lesson_panel";
 import { connectDrops, connectKeys } from "./page_keys";
-import { ParametersPanel } from "./parameters_panel";
+import { ParametersPanel, sameValue } from "./parameters_panel";
 import { PipelineView } from "./pipeline_view";
 import { PixelExplorer } from "./pixel_explorer";
 import { PixelPanel } from "./pixel_panel";
@@ -46,6 +47,8 @@ export class Lab {
   private wasConnected = false;
   private openings = 0; // the last one counts
   private choosing = false; // the dialog is open, or about to be
+  private afterOpened: (() => void) | undefined; // once the program that is being opened runs
+  private sizedByCommand = false; // a command of a lesson has changed the size of the image
 
   private readonly session: Session;
   private readonly workspace: Workspace;
@@ -64,6 +67,12 @@ export class Lab {
   private readonly pipeline: PipelineView;
   private readonly lesson: LessonPanel;
 
+  private readonly runTimeButton: HTMLButtonElement = h(
+    "button",
+    { type: "button", class: "small", title: "A short render with checks in the shaders: values that are not finite, rays that hit where they start, wrong records", onclick: () => void this.checkAtRunTime() },
+    "Run-time checks",
+  );
+  private readonly findings = h("button", { type: "button", class: "image-findings", hidden: true, title: "Show the problems", onclick: () => this.showDock("problems") });
   private readonly dockBody = h("div", { class: "panel-body" });
   private readonly dock: TabList;
   private readonly sideBody = h("div", { class: "panel-body" });
@@ -77,7 +86,10 @@ export class Lab {
     this.session = this.createSession();
     this.workspace = new Workspace({
       onDocuments: () => this.editors.refresh(),
-      onStatus: () => this.showSaveState(),
+      onStatus: () => {
+        this.showSaveState();
+        this.lesson?.showVersion();
+      },
       onSaved: (file) => this.onSaved(file),
       onRenamed: (program) => void this.onCopied(program),
       resolveConflict: askForVersion,
@@ -131,7 +143,10 @@ export class Lab {
       },
       explain: (id) => void this.sources.explain(id),
       workspace: this.workspace,
-      reset: (lesson) => this.resetLesson(lesson),
+      projectFolder: () => this.project?.folder ?? "",
+      run: (command) => this.runCommand(command),
+      openOwnProgram: (lesson) => this.openProgramOf(lesson, "mine"),
+      restoreFiles: (lesson) => this.restoreFiles(lesson),
       close: () => void this.closeLesson(),
     });
 
@@ -226,6 +241,7 @@ export class Lab {
     return new ProblemsPanel({
       open: (file, line, column) => void this.sources.open(file, line, column),
       explain: (id) => void this.sources.explain(id),
+      showPixel: (x, y) => void this.pixels.select(x, y),
       inDiagram: (diagnostic) => {
         this.showDock("pipeline");
         const index = this.pipeline.diagnostics.findIndex((other) => other.id === diagnostic.id && other.file === diagnostic.file && other.line === diagnostic.line);
@@ -237,12 +253,12 @@ export class Lab {
   private createLayout() {
     const middle = split(
       h("section", { class: "area", id: "editors", "aria-label": "Editors" }, this.editors.element),
-      h("section", { class: "area panel", id: "dock", "aria-label": "Problems and pipeline" }, h("div", { class: "bar" }, this.dock.element), this.dockBody),
+      h("section", { class: "area panel", id: "dock", "aria-label": "Problems and pipeline" }, h("div", { class: "bar" }, this.dock.element, h("div", { class: "actions" }, this.runTimeButton)), this.dockBody),
       { name: "middle", label: "Height of the editors", vertical: true, share: 0.7, minFirst: 120, minSecond: 90 },
     );
     const facts = h("div", { class: "image-status" }, this.imageBar.facts, this.pixels.hover);
     const right = split(
-      h("section", { class: "area image-area", id: "image", "aria-label": "Image" }, this.imageBar.element, this.image.element, facts),
+      h("section", { class: "area image-area", id: "image", "aria-label": "Image" }, this.imageBar.element, this.image.element, this.findings, facts),
       h("section", { class: "area panel", id: "side", "aria-label": "Parameters, view and pixel" }, h("div", { class: "bar" }, this.side.element), this.sideBody),
       { name: "right", label: "Height of the image", vertical: true, share: 0.6, minFirst: 160, minSecond: 110 },
     );
@@ -296,7 +312,7 @@ export class Lab {
   private connectPage(): void {
     const byId = (id: string) => document.getElementById(id)!;
     const upload = (files: readonly File[]) => void this.uploads.upload(files);
-    connectKeys({ choose: () => void this.choose(), save: () => void this.workspace.save(), help: () => showHelp(this.project), upload }, () => [
+    connectKeys({ choose: () => void this.choose(), save: () => void this.workspace.save({ missing: true }), help: () => showHelp(this.project), upload }, () => [
       [this.lesson.element, "select"],
       [byId("editors"), ".cm-content"],
       [byId("dock"), "[role=tab][aria-selected=true]"],
@@ -309,6 +325,12 @@ export class Lab {
       // The user may have opened the new address in another tab.
       if (this.session.connection === "refused" || this.session.connection === "full") this.session.connect();
     });
+    document.addEventListener("visibilitychange", () => {
+      const hidden = document.visibilityState === "hidden";
+      this.session.setHidden(hidden);
+      if (!hidden) void this.workspace.refresh();
+    });
+    this.session.setHidden(document.visibilityState === "hidden");
     setInterval(() => {
       if (document.visibilityState === "visible" && this.session.connection === "open") void this.workspace.refresh();
     }, kPollInterval);
@@ -406,14 +428,95 @@ export class Lab {
     if (this.workspace.program) this.setAddress("program", this.workspace.program.name);
   }
 
-  private async resetLesson(lesson: Lesson): Promise<void> {
+  private async restoreFiles(lesson: Lesson): Promise<void> {
     try {
       await this.workspace.save();
       await api.copyProgram(lesson.program, lesson.copy, true);
       this.workspace.discard();
-      await this.openLesson(lesson);
+      await this.load(lesson.copy, "", ++this.openings);
     } catch (error) {
       notify((error as Error).message, "error");
+    }
+  }
+
+  // Opens a program that the page of a lesson names, beside this page: "mine" is the lesson's program as the user has
+  // changed it. Returns false if that failed.
+  private async openProgramOf(lesson: Lesson, name: string): Promise<boolean> {
+    const builtIn = `<programs/${name}>`;
+    const isOwn = name === "mine" || builtIn === lesson.program;
+    const shown = this.workspace.program?.name;
+    if (isOwn ? shown === lesson.copy || shown === lesson.program : shown === builtIn) return true;
+    let current = lesson;
+    try {
+      this.lessons = await api.lessons();
+      this.lesson.setLessons(this.lessons);
+      current = this.lesson.find(lesson.name) ?? lesson;
+    } catch {
+      // The connection reports it.
+    }
+    if (!(await this.load(isOwn ? (current.copied ? current.copy : current.program) : builtIn, "", ++this.openings))) return false;
+    if (isOwn) this.workspace.copyTo = current.copy;
+    this.lesson.showVersion();
+    return true;
+  }
+
+  // Does what a command of a lesson does in a terminal.
+  private async runCommand(command: LessonCommand): Promise<void> {
+    const lesson = this.lesson.lesson;
+    if (!lesson || !("program" in command)) return;
+    if (!(await this.openProgramOf(lesson, command.program)) || this.lesson.lesson !== lesson) return;
+    const act = () => {
+      if (command.kind === "run") this.showRun(command);
+      else if (command.kind === "instrument") void this.checkAtRunTime();
+    };
+    if (command.kind === "problems" || command.kind === "instrument") this.showDock("problems");
+    else if (command.kind === "pipeline") this.showDock("pipeline");
+    else if (command.kind === "parameters") this.selectSide("parameters");
+    else if (command.kind === "original") await this.lesson.startAgain(lesson);
+    await this.workspace.save();
+    if (this.session.opened && this.session.state) act();
+    else this.afterOpened = act;
+  }
+
+  // The parameters, the output and the frame that a command shows. Whatever it does not set has its default.
+  private showRun(run: RunCommand): void {
+    const { session } = this;
+    const { opened, state } = session;
+    if (!opened || !state) return;
+    for (const [parameter, value] of Object.entries(parameterValues(opened.description.parameters, run.parameters)))
+      if (!sameValue(value, state.parameters[parameter]!)) session.send({ do: "set", parameter, value });
+    const unknown = Object.keys(run.parameters).filter((name) => !opened.description.parameters.some((parameter) => parameter.name === name));
+    if (unknown.length > 0) notify(`Your program has no parameter '${unknown[0]}'`, "error");
+    const output = run.output ?? opened.description.outputs[0]?.name;
+    if (output && state.output !== output) session.send({ do: "output", name: output });
+    if (run.size || this.sizedByCommand) {
+      const [width, height] = run.size ?? this.project!.size;
+      session.send({ do: "size", width, height });
+      this.sizedByCommand = run.size !== undefined;
+    }
+    if (state.frames && !state.still && !run.plays) {
+      session.send({ do: "pause", on: true });
+      session.send({ do: "rewind" });
+      session.send({ do: "advance", until: run.frames });
+      return;
+    }
+    if (state.frames && !state.still) session.send({ do: "rewind" });
+    session.send({ do: "pause", on: false });
+  }
+
+  private async checkAtRunTime(): Promise<void> {
+    this.runTimeButton.disabled = true;
+    this.runTimeButton.textContent = "Checking…";
+    this.showDock("problems");
+    try {
+      const before = this.diagnostics.length;
+      await this.session.ask({ do: "instrument" }, "done");
+      if (this.diagnostics.length <= before && !this.diagnostics.some((diagnostic) => /^Q00/.test(diagnostic.id))) notify("The run-time checks have found no problem");
+    } catch (error) {
+      notify((error as Error).message, "error");
+    } finally {
+      this.runTimeButton.disabled = false;
+      this.runTimeButton.textContent = "Run-time checks";
     }
   }
 
@@ -449,6 +552,7 @@ export class Lab {
       }
       if (opening !== this.openings) return false;
     } while (this.workspace.status !== "saved");
+    this.afterOpened = undefined;
     this.diagnostics = program.diagnostics;
     this.outdated = false;
     this.toldCamera = false;
@@ -569,6 +673,9 @@ export class Lab {
     this.view.showState(state, this.usesCamera());
     this.pixelPanel.setSession(state.frames, state.prints);
     this.imageBar.showState(state);
+    const act = this.afterOpened;
+    this.afterOpened = undefined;
+    act?.();
   }
 
   private showScenes(): void {
@@ -577,7 +684,7 @@ export class Lab {
 
   private showSaveState(): void {
     const status = this.workspace.status;
-    const texts = { saved: this.workspace.program?.builtIn ? "Built-in: the first edit makes a copy" : "Saved", changed: "Edited", saving: "Saving…", conflict: "Also changed on disk", failed: "Not saved" };
+    const texts = { saved: this.workspace.program?.builtIn ? "Built-in: the first edit makes a copy" : "Saved", changed: "Edited", saving: "Saving…", conflict: "Also changed on disk", failed: "Not saved: trying again", missing: "Deleted on disk" };
     this.saveState.textContent = this.workspace.program ? texts[status] : "";
     this.saveState.className = `save-state ${status}`;
     const failed = this.workspace.files.find((file) => file.status === status && file.message);
@@ -605,7 +712,15 @@ export class Lab {
     this.showSide();
   }
 
+  // What the image shows is named below it, because the program has no errors.
+  private showFindings(): void {
+    const [first, ...others] = this.diagnostics.filter(isRunFinding);
+    this.findings.hidden = !first;
+    if (first) this.findings.textContent = `⚠ ${first.text}${others.length > 0 ? `, and ${others.length} more` : ""}`;
+  }
+
   private showStatus(): void {
+    this.showFindings();
     this.status.show(this.diagnostics, this.outdated);
     this.imageBar.showFacts();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tasks of the lessons. A solution is the built-in program with edits. A task is done if the user's program renders the
-// same image as the solution, with the stated parameters, or has the same values.
+// same image as the solution, with the stated parameters, or has the same values. Each task starts from the lesson's program,
+// and the other tasks may be done in it (acceptedTasks).
 import type { ParameterValue } from "./protocol";
 import type { ValueComparison } from "./value_comparison";
 
@@ -383,10 +384,18 @@ export const kLessonTasks: Readonly<Record<string, readonly LessonTask[]>> = {
   ],
 };
 
-// The files of the solution, by name in the folder. Throws if an edit does not fit, which the tests exclude.
-export function solutionFiles(originals: ReadonlyMap<string, string>, main: string, task: LessonTask): Map<string, string> {
+// The programs that count as the solution of a task: the lesson's program with the task alone, and with any of the other tasks,
+// because a student keeps what is done.
+export function acceptedTasks(tasks: readonly LessonTask[], task: LessonTask): LessonTask[][] {
+  const others = tasks.filter((other) => other !== task);
+  return Array.from({ length: 1 << others.length }, (_, set) => [...others.filter((_, i) => (set >> i) & 1), task]);
+}
+
+// The files of the program in which these tasks are done, by name in the folder. Throws if an edit does not fit, which the
+// tests exclude.
+export function solutionFiles(originals: ReadonlyMap<string, string>, main: string, ...tasks: readonly LessonTask[]): Map<string, string> {
   const files = new Map(originals);
-  for (const edit of task.edits) {
+  for (const edit of tasks.flatMap((task) => task.edits)) {
     const name = edit.file ?? main;
     const text = files.get(name) ?? "";
     const at = text.indexOf(edit.from);

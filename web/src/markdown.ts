@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Markdown of the project's pages as elements: headings, paragraphs, lists, tables, code, quotes, images, links and
-// emphasis. Comments on lines of their own are skipped; other HTML stays text.
+// emphasis. Comments on lines of their own are not shown; other HTML stays text. A comment "lab: TEXT" replaces the block that
+// follows it by TEXT, which is Markdown, too: a page can differ where the lab does something else than the command line.
 import { h } from "./dom";
 
 export interface MarkdownOptions {
@@ -10,6 +11,8 @@ export interface MarkdownOptions {
   link?: (target: string, content: Node[]) => Node | undefined;
   // Colored code; plain text without it.
   code?: (text: string, language: string) => Node;
+  // Returns the element that represents a block of code, undefined for an ordinary one. `comments`: those above it.
+  block?: (text: string, language: string, comments: readonly string[]) => Node | undefined;
   // 1: a heading of level 1 becomes h1
   firstHeading?: number;
 }
@@ -123,6 +126,17 @@ function list(lines: string[], options: MarkdownOptions): Node {
   );
 }
 
+// The line after the block at `from`, which ends at an empty line, or at its closing fence.
+function endOfBlock(lines: readonly string[], from: number): number {
+  let at = from;
+  while (at < lines.length && lines[at]!.trim() === "") ++at;
+  const fence = /^(```+|~~~+)/.exec(lines[at] ?? "")?.[1];
+  const isEnd = (line: string) => (fence ? line.startsWith(fence) : line.trim() === "");
+  if (at < lines.length) ++at;
+  while (at < lines.length && !isEnd(lines[at]!)) ++at;
+  return fence ? at + 1 : at;
+}
+
 function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
   const lines = text.replace(/\r/g, "").split("\n");
   const blocks: Node[] = [];
@@ -131,21 +145,37 @@ function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
     while (end < lines.length && test(lines[end]!, end)) ++end;
     return end;
   };
+  let comments: string[] = []; // directly above the next block
+  const pre = (code: string, language: string) => options.block?.(code, language, comments) ?? h("pre", { tabindex: 0 }, options.code?.(code, language) ?? h("code", {}, code));
+  let commented = 0; // number of blocks when the last of them was read
   for (let i = 0; i < lines.length; ) {
     const line = lines[i]!;
     if (line.trim() === "") {
       ++i;
       continue;
     }
+    if (blocks.length !== commented) {
+      comments = [];
+      commented = blocks.length;
+    }
     if (line.startsWith("<!--")) {
-      i = takeWhile(i, (other) => !other.includes("-->")) + 1;
+      const end = takeWhile(i, (other) => !other.includes("-->"));
+      const comment = lines.slice(i, end + 1).join("\n").replace(/^<!--/, "").replace(/-->[\s\S]*$/, "").trim();
+      i = end + 1;
+      const variant = /^lab:\s*([\s\S]*)$/.exec(comment)?.[1];
+      if (variant === undefined) comments.push(comment);
+      else {
+        blocks.push(...markdownBlocks(variant, options));
+        commented = blocks.length; // an empty text leaves no block
+        i = endOfBlock(lines, i);
+      }
       continue;
     }
     const fence = /^(```+|~~~+)\s*(\w*)/.exec(line);
     if (fence) {
       const end = takeWhile(i + 1, (other) => !other.startsWith(fence[1]!));
       const code = lines.slice(i + 1, end).join("\n");
-      blocks.push(h("pre", { tabindex: 0 }, options.code?.(code, fence[2]!) ?? h("code", {}, code)));
+      blocks.push(pre(code, fence[2]!));
       i = end + 1;
       continue;
     }
@@ -160,7 +190,7 @@ function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
       let end = takeWhile(i, (other) => /^ {4}/.test(other) || other.trim() === "");
       while (lines[end - 1]!.trim() === "") --end;
       const code = lines.slice(i, end).map((other) => other.slice(4)).join("\n");
-      blocks.push(h("pre", { tabindex: 0 }, h("code", {}, code)));
+      blocks.push(pre(code, ""));
       i = end;
       continue;
     }

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
-import { kLessonTasks, solutionFiles } from "../src/lesson_tasks";
+import { acceptedTasks, kLessonTasks, solutionFiles } from "../src/lesson_tasks";
 
 declare const REPOSITORY: string;
 
@@ -35,3 +35,23 @@ for (const [name, tasks] of Object.entries(kLessonTasks)) {
     }
   });
 }
+
+test("the tasks of a lesson can be done in any order, and stay done", () => {
+  let several = 0;
+  for (const [name, tasks] of Object.entries(kLessonTasks)) {
+    const { files, main } = lessonFiles(name);
+    for (const task of tasks) {
+      const accepted = acceptedTasks(tasks, task);
+      assert.equal(accepted.length, 2 ** (tasks.length - 1));
+      assert.deepEqual(accepted[0], [task], "the task alone comes first");
+      // Whatever was done before, the program has the changes of all tasks.
+      const texts = accepted.map((done) => JSON.stringify([...solutionFiles(files, main, ...done)]));
+      assert.equal(new Set(texts).size, accepted.length, `${name}: ${task.id}`);
+      several += accepted.length > 1 ? 1 : 0;
+    }
+    const forward = solutionFiles(files, main, ...tasks);
+    const backward = solutionFiles(files, main, ...[...tasks].reverse());
+    assert.deepEqual([...forward], [...backward], name);
+  }
+  assert.ok(several >= 14);
+});
