@@ -143,7 +143,7 @@ test("a killed worker starts again", async () => {
   assert.ok(!lab.server.workers().includes(worker));
 });
 
-test("an endless shader ends in a message, and the fix shows the image", async () => {
+test("an endless shader ends in a message, which disappears when the fix shows the image", async () => {
   const own = await Server.start({ args: ["--size", "64x36", "--timeout", "3"] });
   try {
     const page = (lab.page = await openPage(lab.context, own.url + "#lesson=01_first_ray"));
@@ -154,6 +154,8 @@ test("an endless shader ends in a message, and the fix shows the image", async (
     await page.locator(".image-overlay", { hasText: "takes too long" }).or(page.locator(".image-overlay", { hasText: "has stopped" })).first().waitFor();
     await replaceInEditor(page, endless, "payload.color = vec3(0.0, 0.5, 0.0);");
     await waitForColor(page, 0.03, 0.03, ([r, g]) => r < 20 && g > 100);
+    await waitForImage(page);
+    assert.doesNotMatch(await page.locator("body").innerText(), /too long|too slow|has stopped/);
   } finally {
     await own.stop();
   }

@@ -194,7 +194,7 @@ class FakeSession {
       for (const [name, text] of Object.entries(command.files)) writeFileSync(path.join(where, name), text);
       command.program = path.basename(where);
     }
-    this.state = { program: command.program, parameters: {}, output: "", exposure: 0, tonemap: "default", width: command.width ?? 640, height: command.height ?? 360, samples: command.samples ?? 64, frame: 0, frames: false, paused: false, camera: { from: [0, 1, 4], at: [0, 0, 0], up: [0, 1, 0], fov: 45 }, canUndo: false, canRedo: false, prints: false };
+    this.state = { program: command.program, parameters: {}, output: "", exposure: 0, tonemap: "default", width: command.width ?? 640, height: command.height ?? 360, samples: command.samples ?? 64, frame: 0, frames: false, still: false, paused: false, camera: { from: [0, 1, 4], at: [0, 0, 0], up: [0, 1, 0], fov: 45 }, canUndo: false, canRedo: false, prints: false };
     this.event("worker", { state: "started", message: "", restarts: 0 });
     this.event("stage", { text: "compiling" });
     const { stdout, stderr, failed } = await run(["run", this.target, "--help", "--json"]);

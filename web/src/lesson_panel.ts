@@ -7,6 +7,7 @@ import { type CheckResult, checkTask, type ComparedRun, compareRuns } from "./le
 import { icon } from "./icons";
 import { commandLine, effectText, type LessonCommand, parseCommand, type RunCommand, valueOf } from "./lesson_command";
 import { applyEdit, editedFile, parseEdit } from "./lesson_edit";
+import { labText, withoutFooter } from "./lesson_text";
 import { kLessonTasks, type LessonTask, solutionFiles } from "./lesson_tasks";
 import { type Files, LessonVersions, sameFiles } from "./lesson_versions";
 import { inlineMarkdown, type MarkdownOptions, renderMarkdown } from "./markdown";
@@ -53,7 +54,11 @@ function codeLines(text: string, language: string): Node[] {
 // Lines that wrap, with the part of a diff that they are.
 function diffLines(text: string): Node[] {
   const kinds: Record<string, string> = { "-": "removed", "+": "added" };
-  return text.split("\n").map((line) => h("span", { class: `line ${kinds[line[0] ?? ""] ?? ""}` }, line || " "));
+  const lines = text.split("\n");
+  // The indentation that all lines have would take half of a narrow column.
+  const indents = lines.filter((line) => line.trim().length > 1).map((line) => /^.?(\s*)/.exec(line)![1]!.length);
+  const indent = Math.min(...indents);
+  return lines.map((line) => h("span", { class: `line ${kinds[line[0] ?? ""] ?? ""}` }, `${line.slice(0, 1) || " "} ${line.slice(1 + indent)}`));
 }
 
 // Address of a page or figure relative to a page, below docs/; undefined if it leaves the folder.
@@ -167,7 +172,7 @@ export class LessonPanel {
     }
     if (this.current !== lesson) return;
     const tasks = kLessonTasks[lesson.name] ?? [];
-    replace(this.body, renderMarkdown(this.withoutFooter(text), this.options(lesson)), this.taskSection(lesson, tasks), this.footer(lesson));
+    replace(this.body, renderMarkdown(labText(withoutFooter(text)), this.options(lesson)), this.taskSection(lesson, tasks), this.footer(lesson));
     this.body.scrollTop = 0;
     this.showVersion();
   }
@@ -203,7 +208,7 @@ export class LessonPanel {
     const solution = this.solutions().find(({ files }) => sameFiles(files, own));
     const kept = this.versions.find(own);
     const label = sameFiles(Object.fromEntries(filesOf(this.original)), own) ? "The lesson's program" : (solution?.label ?? (kept ? `Your version, ${timeText(kept.time)}` : "Your version"));
-    if (this.versionLabel.textContent !== label) this.versionLabel.textContent = label;
+    if (this.versionLabel.textContent !== label) this.versionLabel.textContent = this.versionLabel.title = label;
   }
 
   private versionItems(): MenuItem[] {
@@ -390,11 +395,6 @@ export class LessonPanel {
         return options.link!(target, content);
       },
     };
-  }
-
-  // The buttons below the tasks replace the links to other lessons.
-  private withoutFooter(text: string): string {
-    return text.replace(/\nPrograms?: [\s\S]*$/, "\n");
   }
 
   private doneTasks(lesson: Lesson): Set<string> {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Markdown of the project's pages as elements: headings, paragraphs, lists, tables, code, quotes, images, links and
-// emphasis. Comments on lines of their own are not shown; other HTML stays text. A comment "lab: TEXT" replaces the block that
-// follows it by TEXT, which is Markdown, too: a page can differ where the lab does something else than the command line.
+// emphasis. Comments on lines of their own are not shown; other HTML stays text.
 import { h } from "./dom";
 
 export interface MarkdownOptions {
@@ -126,17 +125,6 @@ function list(lines: string[], options: MarkdownOptions): Node {
   );
 }
 
-// The line after the block at `from`, which ends at an empty line, or at its closing fence.
-function endOfBlock(lines: readonly string[], from: number): number {
-  let at = from;
-  while (at < lines.length && lines[at]!.trim() === "") ++at;
-  const fence = /^(```+|~~~+)/.exec(lines[at] ?? "")?.[1];
-  const isEnd = (line: string) => (fence ? line.startsWith(fence) : line.trim() === "");
-  if (at < lines.length) ++at;
-  while (at < lines.length && !isEnd(lines[at]!)) ++at;
-  return fence ? at + 1 : at;
-}
-
 function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
   const lines = text.replace(/\r/g, "").split("\n");
   const blocks: Node[] = [];
@@ -162,13 +150,7 @@ function markdownBlocks(text: string, options: MarkdownOptions): Node[] {
       const end = takeWhile(i, (other) => !other.includes("-->"));
       const comment = lines.slice(i, end + 1).join("\n").replace(/^<!--/, "").replace(/-->[\s\S]*$/, "").trim();
       i = end + 1;
-      const variant = /^lab:\s*([\s\S]*)$/.exec(comment)?.[1];
-      if (variant === undefined) comments.push(comment);
-      else {
-        blocks.push(...markdownBlocks(variant, options));
-        commented = blocks.length; // an empty text leaves no block
-        i = endOfBlock(lines, i);
-      }
+      comments.push(comment);
       continue;
     }
     const fence = /^(```+|~~~+)\s*(\w*)/.exec(line);
