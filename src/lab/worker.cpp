@@ -309,7 +309,8 @@ class Worker : public job::Observer {
     request.size = {};
     request.limits = {};
     request.launchTimeout = settings_.defaults.timeout;
-    instrumented_ = job::runInstrumented(*engine_, session.program(), session.scene(), request,
+    const program::Program program = program::loadProgram(loadedName(opened_));  // without heat maps
+    instrumented_ = job::runInstrumented(*engine_, program, session.scene(), request,
                                          [this](const Diagnostic& diagnostic) { deviceHung(diagnostic); });
     sendDiagnostics(session.diagnostics(), false);
   }
