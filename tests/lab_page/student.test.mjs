@@ -75,7 +75,7 @@ test("a command shows the frame that it writes, and a series of files plays", as
   await page.waitForFunction(() => Number(document.querySelector("canvas.image").dataset.samples) < 25);
 });
 
-test("a command shows the program of another lesson beside the page, and a button leads back", async () => {
+test("a command shows the program of a different lesson beside the page, and a button leads back", async () => {
   const page = await openLesson("07_mirror_recursion");
   await command(page, "lessons/06_mirror_loop").click();
   await page.locator(".program-title", { hasText: "06_mirror_loop" }).waitFor();

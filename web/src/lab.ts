@@ -474,7 +474,10 @@ export class Lab {
     else if (command.kind === "parameters") this.selectSide("parameters");
     else if (command.kind === "original") await this.lesson.startAgain(lesson);
     await this.workspace.save();
-    if (this.session.opened && this.session.state) act();
+    if (command.kind === "run" && this.diagnostics.some((diagnostic) => diagnostic.severity === "error")) {
+      this.showDock("problems");
+      notify("The program has errors, which Problems lists", "error");
+    } else if (this.session.opened && this.session.state) act();
     else this.afterOpened = act;
   }
 

@@ -55,7 +55,7 @@ export class Session {
   private scheduled = false;
   private opens = 0; // number of the last `open`
   private opening = 0; // the one that the worker executes, or has executed
-  private hidden = false; // nobody sees the page
+  private hidden = false; // the browser does not show the page
   private pausedWhileHidden = false; // the session continues when the page is shown
 
   constructor(private readonly handlers: SessionHandlers) {
