@@ -34,10 +34,11 @@ bool usesFrame(const std::string& text, const Program& program) {
     if (token.kind == TokenKind::word && isNameOfFrame(textOf(text, token))) return true;
     if (token.kind == TokenKind::directive && definesFrame(textOf(text, token))) return true;
   }
-  // Stages of the lecture form include the predeclared names. Other files of the library are not read here.
+  // Stages of the lecture form include the predeclared names and the inputs. Other files of the library are not read here.
   return std::ranges::any_of(shader::findIncludes(text), [&](const shader::IncludeDirective& include) {
     const std::string name = std::filesystem::path(include.name).lexically_normal().generic_string();
-    return !name.starts_with("quintet/gsn") && !program.files.contains(name);
+    const bool isOfForm = name.starts_with("quintet/gsn") || name.starts_with("quintet/generated/");
+    return !isOfForm && !program.files.contains(name);
   });
 }
 
