@@ -53,7 +53,13 @@ program::Probes requestedProbes(const RenderRequest& request, const program::Pro
   program::Probes probes;
   probes.prints = request.print.has_value();
   probes.heat = program::hasHeatMap(program, request.outputs);
-  if (program::hasHeatMap(program, request.outputs, program::kHeatTime) && !device.shaderClock)
+  const bool measuresTime = program::hasHeatMap(program, request.outputs, program::kHeatTime);
+  if (measuresTime && device.software)
+    throw UsageError(fmt::format(
+        "output '{}': not available on {}, because the clock of shaders on a CPU also counts the time in which "
+        "other threads run; use heat_rays or heat_bounces, or a GPU",
+        program::kHeatTime, device.name));
+  if (measuresTime && !device.shaderClock)
     throw UsageError(
         fmt::format("output '{}': {} has no clock for shaders (VK_KHR_shader_clock)", program::kHeatTime, device.name));
   return probes;

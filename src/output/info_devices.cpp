@@ -37,7 +37,7 @@ Json toJson(const gpu::DeviceInfo& device) {
           {"unusableReason", device.unusableReason},
           {"rayQuery", device.rayQuery},
           {"positionFetch", device.positionFetch},
-          {"shaderClock", device.shaderClock},
+          {"shaderClock", device.shaderClock && !device.software},  // as job::requestedProbes()
           {"subgroupSize", device.subgroupSize},
           {"limits",
            {{"handleSize", limits.handleSize},

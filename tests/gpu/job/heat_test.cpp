@@ -108,7 +108,9 @@ class HeatTest : public testing::Test {
     return job_->run(request.limits, observer_);
   }
   static RenderRequest boxRequest(std::uint64_t samples) {
-    RenderRequest request = makeRequest({2, 1}, samples, allHeatMaps());
+    std::vector<std::string> maps = allHeatMaps();
+    if (engine().context().info().software) std::erase(maps, "heat_time");  // is an error there
+    RenderRequest request = makeRequest({2, 1}, samples, maps);
     request.loadedScene = quintet::test::boxScene();
     return request;
   }
@@ -139,7 +141,9 @@ void expectBoxCounts(const RenderResult& result) {
   EXPECT_EQ(valuesOf(result, "heat_depth"), (Values{2, 1}));
   EXPECT_EQ(valuesOf(result, "heat_any_hit"), (Values{1, 0}));
   EXPECT_EQ(valuesOf(result, "heat_intersection"), (Values{1, 0}));
-  for (const float ticks : valuesOf(result, "heat_time")) EXPECT_GT(ticks, 0.0f);
+  const auto isTime = [](const render::FilmPlane& plane) { return plane.name == "heat_time"; };
+  if (std::ranges::any_of(result.film->planes(), isTime))
+    for (const float ticks : valuesOf(result, "heat_time")) EXPECT_GT(ticks, 0.0f);
 }
 
 TEST_F(HeatTest, CountsEachStage) { expectBoxCounts(render(boxRequest(6), boxProgram())); }

@@ -45,6 +45,12 @@ TEST(RequestedProbes, TimeRequiresAClock) {
   }
   device.shaderClock = true;
   EXPECT_TRUE(requestedProbes(request, programWith({"heat_time"}), device).heat);
+  // The clock of a CPU counts the time of other threads, too.
+  device.software = true;
+  EXPECT_THROW(requestedProbes(request, programWith({"heat_time"}), device), UsageError);
+  request.outputs = {"heat_rays"};
+  EXPECT_TRUE(requestedProbes(request, programWith({"heat_rays"}), device).heat);
+  request.outputs = {"heat_time"};
   // An output of the program with this name needs no clock.
   program::Program own = programWith({});
   own.outputs.push_back({.name = "heat_time"});
