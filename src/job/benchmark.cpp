@@ -103,17 +103,26 @@ Json rayKind(std::uint32_t rays, std::uint32_t hits) {
   return {{"rays", rays}, {"hits", hits}, {"misses", rays - hits}};
 }
 
+// Why minimal shaders cannot trace the rays of a program in this scene; empty if they can.
+std::string whyNotComparable(const program::SceneFacts& facts) {
+  const auto has = [&](auto member) { return std::ranges::any_of(facts.geometries, member); };
+  std::string part;
+  if (has(&program::GeometryFacts::procedural))
+    part = "procedural geometry";
+  else if (!std::ranges::all_of(facts.geometries, &program::GeometryFacts::opaque))
+    part = "materials with alpha or thin walls";
+  if (part.empty()) return {};
+  return "the comparison with minimal shaders works for opaque triangles only, and the scene has " + part;
+}
+
 // The program's rate against that of its own rays. Batches differ in their samples; the recorded one is the first, and the
 // program is timed with the same sample: each measurement is the first batch of a fresh renderer.
 Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   constexpr std::uint32_t kCapacity = 32;  // recorded rays per pixel
   gpu::Context& context = scene.context();
-  if (std::ranges::any_of(scene.facts().geometries, &program::GeometryFacts::procedural))
-    throw UsageError(
-        fmt::format(
-            "{}: the comparison with minimal shaders works for triangles only, and the scene has procedural geometry",
-            setup.request.scene.string()),
-        Remedy::measureLaunches);
+  if (const std::string reason = whyNotComparable(scene.facts()); !reason.empty())
+    throw UsageError(fmt::format("{}: {}; --profile measures all scenes", setup.request.scene.string(), reason),
+                     Remedy::measureLaunches);
   const program::Program program = program::loadProgram(setup.request.program);
   const program::Program replay = program::loadProgram("replay");
   gpu::BufferOptions recordOptions;
@@ -454,8 +463,10 @@ Json runBenchmark(const BenchmarkRequest& request) {
                  {"triangles", triangles.stored},   {"instancedTriangles", triangles.instanced},
                  {"loadSeconds", loadSeconds}};
   {
-    render::DeviceScene scene = setup.onDevice(context);
-    result["pathTracer"] = rateRatio(setup, scene);
+    const program::Program program = program::loadProgram(request.program);
+    render::DeviceScene scene = setup.onDevice(context, {.singleAnyHit = program::requiredSingleAnyHit(program)});
+    const std::string reason = request.profile ? whyNotComparable(scene.facts()) : "";
+    result["pathTracer"] = reason.empty() ? rateRatio(setup, scene) : Json{{"notCompared", reason}};
     if (request.profile) result["profile"] = profile(setup, scene);
     const render::DeviceSceneStatistics& s = scene.statistics();
     result["accelerationStructures"] = {

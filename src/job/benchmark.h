@@ -16,7 +16,7 @@
 namespace quintet::job {
 
 struct BenchmarkRequest {
-  std::filesystem::path scene;         // triangles without alpha: the replay supports nothing else
+  std::filesystem::path scene;         // without `profile`, triangles without alpha: the replay supports nothing else
   scene::LoadOptions load;             // how `scene` is read
   std::string program = "pathtracer";  // its rays go through traceClosest and traceVisible
   std::string device;                  // gpu::ContextOptions::device

@@ -117,7 +117,17 @@ TEST_F(Bench, ComparesTrianglesOnly) {
       quintet({"bench", QUINTET_SOURCE_ROOT "/examples/scenes/spheres.scene.toml", "--size", "16x16"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, testing::HasSubstr("procedural geometry"));
+  EXPECT_THAT(result.err, testing::HasSubstr("--profile measures all scenes"));
   EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("Q601")));
+}
+
+TEST_F(Bench, ProfilesScenesThatCannotBeCompared) {
+  const RunResult result = quintet({"bench", QUINTET_SOURCE_ROOT "/examples/scenes/spheres.scene.toml", "--profile",
+                                    "--size", "16x16", "--repeat", "1", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_THAT(json["pathTracer"]["notCompared"].get<std::string>(), testing::HasSubstr("procedural geometry"));
+  EXPECT_GT(json["profile"]["samplesPerSecond"], 0.0);
 }
 
 TEST_F(Bench, ExplainsWhichFormAnOptionRequires) {

@@ -54,7 +54,8 @@ OptionTable declareBench(BenchOptions& options) {
                     "the same rays; or the launches of any program.");
   job::BenchmarkRequest& request = options.request;
   table.add({{.names = "SCENE|PROGRAM",
-              .help = "Scene of triangles without alpha (minimal shaders support nothing else); or a program, and its "
+              .help = "Scene, of triangles without alpha unless --profile is given (minimal shaders support nothing "
+                      "else); or a program, and its "
                       "scene: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
               .target = &options.positional,
               .candidates = programOrSceneCandidates(),
