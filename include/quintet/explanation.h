@@ -100,10 +100,11 @@ struct SearchSettings {
   // Samples that alone make their pixel much brighter than its surroundings. No effect in programs that accumulate.
   bool fireflies = true;
   float threshold = 2;     // of fireflies: how many times as bright, above 0
-  std::size_t limit = 10;  // of samples of each kind to explain; the others are only counted
+  std::size_t limit = 10;  // of groups of each kind to explain; the others are only counted
 };
 
-// A sample that Renderer::search() found, and the event that caused its value. Empty strings and -1 mean unknown: only
+// A sample that Renderer::search() found, and the event that caused its value. It is the first one, or the brightest
+// firefly, of a group of pixels that touch each other. Empty strings and -1 mean unknown: only
 // programs that use the GLSL library state bounce, lobe and material.
 struct FoundSample {
   std::uint32_t x = 0, y = 0;  // pixel of the whole image, from the top left
@@ -112,11 +113,15 @@ struct FoundSample {
   float luminance = 0;         // fireflies: of the sample
   float level = 0;             // fireflies: typical luminance of the surroundings
   std::int64_t bounce = -1;    // scattering events before the cause
-  std::string lobe{};          // of the latest sample of the BSDF
+  std::string lobe{};          // by which the path reached the cause
   std::string material{};      // of the latest surface
   std::string instance{};      // of the latest hit
   std::string event{};         // type of the event
   std::string field{};         // of the event, that is not finite; empty for fireflies
+  std::string lobeMaterial{};  // of the surface at which the lobe was sampled
+  // Of the group: number of pixels, of samples that are not finite or fireflies, and the rectangle of the pixels.
+  std::uint64_t pixels = 1, samples = 1;
+  std::uint32_t firstX = 0, firstY = 0, lastX = 0, lastY = 0;
 };
 
 // What Renderer::search() found.

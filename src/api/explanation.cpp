@@ -32,7 +32,14 @@ std::vector<FoundSample> toApi(const std::vector<job::FoundSample>& found) {
                       .material = cause.material,
                       .instance = cause.instance,
                       .event = cause.event,
-                      .field = cause.field});
+                      .field = cause.field,
+                      .lobeMaterial = cause.lobeMaterial,
+                      .pixels = sample.groupPixels,
+                      .samples = sample.groupSamples,
+                      .firstX = sample.least.x,
+                      .firstY = sample.least.y,
+                      .lastX = sample.most.x,
+                      .lastY = sample.most.y});
   }
   return result;
 }

@@ -14,6 +14,7 @@
 #include "gpu/error.h"
 #include "job/brightest_samples.h"
 #include "job/pixel_explainer.h"
+#include "job/pixel_groups.h"
 #include "job/runnable_program.h"
 
 namespace quintet::job {
@@ -40,9 +41,14 @@ class CauseFinder {
     if (event.type == "closest-hit") now_.instance = event.text("instanceName");
     if (event.type == "surface") {
       now_.material = event.text("material");
-      arrivingLobe_ = now_.lobe;
+      arriving_ = {now_.lobe, now_.lobeMaterial};
+      now_.lobeIsBefore = !now_.lobe.empty();
     }
-    if (event.type == "bsdf") now_.lobe = event.text("lobe");
+    if (event.type == "bsdf") {
+      now_.lobe = event.text("lobe");
+      now_.lobeMaterial = now_.material;
+      now_.lobeIsBefore = false;
+    }
     if (notFinite_) {
       for (const auto& [name, value] : event.fields)
         if (!isFiniteValue(name, value)) return found(event, name);
@@ -59,7 +65,11 @@ class CauseFinder {
   void found(const ExplainedEvent& event, const std::string& field) {
     cause_ = now_;
     // The light at a surface is added after the lobe of the next direction was sampled.
-    if (event.type == "contribution" && event.text("source") == "light sample") cause_.lobe = arrivingLobe_;
+    if (event.type == "contribution" && event.text("source") == "light sample") {
+      cause_.lobe = arriving_.lobe;
+      cause_.lobeMaterial = arriving_.material;
+      cause_.lobeIsBefore = !arriving_.lobe.empty();
+    }
     cause_.event = event.type;
     cause_.field = field;
     cause_.bounce = event.find("scatterings") ? event.integer("scatterings") : now_.lobe.empty() ? -1 : bounces_;
@@ -68,7 +78,10 @@ class CauseFinder {
 
   const bool notFinite_;
   SampleCause now_, cause_;
-  std::string arrivingLobe_;  // by which the path reached the latest surface
+  struct Lobe {
+    std::string lobe, material;
+  };
+  Lobe arriving_;  // by which the path reached the latest surface
   std::int64_t bounces_ = 0;
   float largest_ = 0;
   bool done_ = false;
@@ -85,7 +98,7 @@ class Search {
     const bool fireflies = searchesFireflies(count);
     BrightestSamples brightest({region_.width, region_.height});
     job_.showRequestedFrame();
-    bad_.assign(std::size_t{region_.width} * region_.height, false);
+    bad_.assign(std::size_t{region_.width} * region_.height, {});
     const Stopwatch clock;
     for (std::uint32_t sample = 0; sample < count; ++sample) {
       const std::vector<vec4> values = render(sample);
@@ -94,6 +107,7 @@ class Search {
       result_.samples = sample + 1;
       if (reportStop(count, clock)) break;
     }
+    groupNotFinite();
     if (fireflies) addFireflies(brightest.find(options_.threshold));
     explainAll();
     return std::move(result_);
@@ -157,29 +171,57 @@ class Search {
     const std::vector<uvec2> statistics = job_.renderer().film().downloadStatistics();
     for (std::size_t i = 0; i < values.size(); ++i) {
       const bool discarded = !discarded_.empty() ? statistics[i].y > discarded_[i].y : statistics[i].y > 0;
-      if ((isFinite(values[i]) && !discarded) || (result_.frames && bad_[i])) continue;
-      bad_[i] = true;
-      if (result_.notFiniteCount++ < options_.limit) {
-        FoundSample found;
-        found.pixel = render::pixelAt(region_, i);
-        found.sample = sample;
-        result_.notFinite.push_back(found);
-      }
+      Bad& bad = bad_[i];
+      if ((isFinite(values[i]) && !discarded) || (result_.frames && bad.count > 0)) continue;
+      if (bad.count++ == 0) bad.first = sample;
+      ++result_.notFiniteCount;
     }
     discarded_ = statistics;
   }
 
+  void groupNotFinite() {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < bad_.size(); ++i)
+      if (bad_[i].count > 0) order.push_back(i);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return bad_[i].first; });
+    std::vector<uvec2> pixels;
+    for (const std::size_t i : order) pixels.push_back(render::pixelAt(region_, i) - corner());
+    for (const PixelGroup& group : groupAdjacent({region_.width, region_.height}, pixels)) {
+      if (result_.notFiniteGroups++ >= options_.limit) continue;
+      FoundSample found = foundIn(group, pixels);
+      found.sample = bad_[order[group.members.front()]].first;
+      found.groupSamples = 0;
+      for (const std::size_t member : group.members) found.groupSamples += bad_[order[member]].count;
+      result_.notFinite.push_back(found);
+    }
+  }
+
   void addFireflies(const std::vector<Firefly>& fireflies) {
     result_.fireflyCount = fireflies.size();
-    for (const Firefly& firefly : fireflies) {
-      if (result_.fireflies.size() == options_.limit) break;
-      FoundSample found;
-      found.pixel = firefly.pixel + uvec2(region_.x, region_.y);
+    std::vector<uvec2> pixels;
+    for (const Firefly& firefly : fireflies) pixels.push_back(firefly.pixel);
+    for (const PixelGroup& group : groupAdjacent({region_.width, region_.height}, pixels)) {
+      if (result_.fireflyGroups++ >= options_.limit) continue;
+      const Firefly& firefly = fireflies[group.members.front()];
+      FoundSample found = foundIn(group, pixels);
       found.sample = firefly.sample;
       found.luminance = firefly.luminance;
       found.level = firefly.level;
+      found.groupSamples = group.members.size();
       result_.fireflies.push_back(found);
     }
+  }
+
+  uvec2 corner() const { return {region_.x, region_.y}; }
+
+  // The pixels of a group, in the whole image.
+  FoundSample foundIn(const PixelGroup& group, const std::vector<uvec2>& pixels) const {
+    FoundSample found;
+    found.pixel = pixels[group.members.front()] + corner();
+    found.least = group.least + corner();
+    found.most = group.most + corner();
+    found.groupPixels = group.members.size();
+    return found;
   }
 
   bool reportStop(std::uint64_t count, const Stopwatch& clock) {
@@ -228,7 +270,10 @@ class Search {
   Observer& observer_;
   const render::Region region_;
   std::vector<uvec2> discarded_;  // statistics after the previous sample
-  std::vector<bool> bad_;         // pixels of the region that were not finite
+  struct Bad {
+    std::uint32_t first = 0, count = 0;  // samples that are not finite
+  };
+  std::vector<Bad> bad_;  // by pixel of the region
   SearchResult result_;
 };
 

@@ -23,17 +23,33 @@ std::string causeText(const job::SampleCause& cause) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   if (cause.bounce >= 0) add(counted(cause.bounce, "bounce"));
-  if (!cause.lobe.empty()) add(cause.lobe + " lobe");
-  if (!cause.material.empty()) add("material \"" + printable(cause.material) + "\"");
+  const auto materialText = [](const std::string& name) { return "material \"" + printable(name) + "\""; };
+  if (!cause.lobe.empty()) {
+    const std::string& material = cause.lobeMaterial;
+    add(cause.lobe + " lobe" + (material.empty() ? "" : " of " + materialText(material)));
+  }
+  if (!cause.material.empty() && (cause.lobe.empty() || cause.lobeIsBefore || cause.lobeMaterial.empty()))
+    add((cause.lobeIsBefore ? "then " : "") + materialText(cause.material));
   if (!cause.instance.empty()) add("instance \"" + printable(cause.instance) + "\"");
-  if (!cause.field.empty()) add(fmt::format("{} of {} is not finite", printable(cause.field), cause.event));
+  if (!cause.field.empty())
+    add(fmt::format("{} of {} is not finite", printable(cause.field), cause.event));
   return text;
+}
+
+// " (4 adjacent pixels from 0,4 to 3,4; 16 samples)"; empty for a group of one sample.
+std::string groupText(const job::FoundSample& found, bool frames) {
+  if (found.groupSamples <= 1) return {};
+  const std::string samples =
+      frames || found.groupSamples == found.groupPixels ? "" : counted(found.groupSamples, "sample");
+  if (found.groupPixels == 1) return samples.empty() ? "" : fmt::format(" ({} of this pixel)", samples);
+  return fmt::format(" ({} adjacent pixels from {},{} to {},{}{}{})", found.groupPixels, found.least.x, found.least.y,
+                     found.most.x, found.most.y, samples.empty() ? "" : "; ", samples);
 }
 
 std::string sampleText(const job::FoundSample& found, bool frames, const std::string& value,
                        const CommandFor& commandFor, std::size_t width) {
   std::string text = fmt::format("  pixel {},{}, {} {}: {}\n", found.pixel.x, found.pixel.y,
-                                 frames ? "frame" : "sample", found.sample, value);
+                                 frames ? "frame" : "sample", found.sample, value + groupText(found, frames));
   const std::string cause = causeText(found.cause);
   if (!cause.empty()) text += "    " + wrapped(cause, width, 4, 4) + "\n";
   return text + "    " + commandFor(found) + "\n";  // one line, so that it can be copied
@@ -45,19 +61,28 @@ std::string brightnessText(const job::FoundSample& firefly) {
                      firefly.luminance / firefly.level);
 }
 
-// "23 fireflies, of which 10 are listed" if some were only counted.
-std::string countText(std::uint64_t all, std::size_t listed, std::string_view noun, std::string_view plural) {
-  if (all == listed) return counted(all, noun, plural);
-  return fmt::format("{}, of which {} {} listed", counted(all, noun, plural), listed, nounFor(listed, "is", "are"));
+// "23 fireflies in 12 groups of adjacent pixels, of which 10 are listed" if some were only counted.
+std::string countText(std::uint64_t all, std::uint64_t groups, std::size_t listed, std::string_view noun,
+                      std::string_view plural) {
+  std::string text = counted(all, noun, plural);
+  if (groups < all) text += " in " + counted(groups, "group of adjacent pixels", "groups of adjacent pixels");
+  if (listed < groups) text += fmt::format(", of which {} {} listed", listed, nounFor(listed, "is", "are"));
+  return text;
 }
 
 Json sampleJson(const job::FoundSample& found, const CommandFor& commandFor) {
   Json json{{"pixel", {found.pixel.x, found.pixel.y}},
             {"sample", found.sample},
-            {"value", job::floatsJson({&found.value[0], 3})}};
+            {"value", job::floatsJson({&found.value[0], 3})},
+            {"group",
+             {{"pixels", found.groupPixels},
+              {"samples", found.groupSamples},
+              {"from", {found.least.x, found.least.y}},
+              {"to", {found.most.x, found.most.y}}}}};
   const job::SampleCause& cause = found.cause;
   json["bounce"] = cause.bounce >= 0 ? Json(cause.bounce) : Json();
   for (const auto& [name, text] : {std::pair{"lobe", cause.lobe},
+                                   {"lobeMaterial", cause.lobeMaterial},
                                    {"material", cause.material},
                                    {"instance", cause.instance},
                                    {"event", cause.event},
@@ -74,13 +99,14 @@ std::string searchText(const job::SearchResult& result, const CommandFor& comman
   if (result.notFiniteCount > 0) {
     const auto& [noun, plural] = result.frames ? std::pair("pixel that is not finite", "pixels that are not finite")
                                                : std::pair("sample that is not finite", "samples that are not finite");
-    text += countText(result.notFiniteCount, result.notFinite.size(), noun, plural) + "\n";
+    text += countText(result.notFiniteCount, result.notFiniteGroups, result.notFinite.size(), noun, plural) + "\n";
     for (const job::FoundSample& found : result.notFinite)
       text += sampleText(found, result.frames, vectorText(found.value), commandFor, width);
   }
   if (result.fireflyCount > 0) {
-    text += fmt::format("{}{}\n", text.empty() ? "" : "\n",
-                        countText(result.fireflyCount, result.fireflies.size(), "firefly", "fireflies"));
+    text += fmt::format(
+        "{}{}\n", text.empty() ? "" : "\n",
+        countText(result.fireflyCount, result.fireflyGroups, result.fireflies.size(), "firefly", "fireflies"));
     for (const job::FoundSample& found : result.fireflies)
       text += sampleText(found, result.frames, brightnessText(found), commandFor, width);
   }
@@ -91,9 +117,14 @@ std::string searchText(const job::SearchResult& result, const CommandFor& comman
 }
 
 std::string searchJson(const job::SearchResult& result, const CommandFor& commandFor) {
-  Json json{{"samples", result.samples},           {"frames", result.frames},
-            {"interrupted", result.interrupted},   {"notFiniteCount", result.notFiniteCount},
-            {"fireflyCount", result.fireflyCount}, {"notFinite", Json::array()},
+  Json json{{"samples", result.samples},
+            {"frames", result.frames},
+            {"interrupted", result.interrupted},
+            {"notFiniteCount", result.notFiniteCount},
+            {"fireflyCount", result.fireflyCount},
+            {"notFiniteGroups", result.notFiniteGroups},
+            {"fireflyGroups", result.fireflyGroups},
+            {"notFinite", Json::array()},
             {"fireflies", Json::array()}};
   for (const job::FoundSample& found : result.notFinite) json["notFinite"].push_back(sampleJson(found, commandFor));
   for (const job::FoundSample& found : result.fireflies) {

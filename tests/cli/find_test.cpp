@@ -33,7 +33,9 @@ TEST_F(Find, PrintsACommandThatExplainsTheSample) {
   const std::vector<std::string> arguments{"--program", "sky", "--nan", "--limit=2", "--region", "0,4,16,1"};
   const RunResult text = find(arguments);
   EXPECT_EQ(text.status, 1) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("16 samples that are not finite, of which 2 are listed\n  pixel 0,4, sample 0: nan"));
+  EXPECT_THAT(text.out,
+              HasSubstr("16 samples that are not finite in 1 group of adjacent pixels\n  pixel 0,4, sample 0: nan"));
+  EXPECT_THAT(text.out, HasSubstr("(4 adjacent pixels from 0,4 to 3,4; 16 samples)\n"));
   EXPECT_THAT(text.out, HasSubstr("value of store is not finite\n"));
   const std::string command = "explain-pixel scene.gltf --size 16x12 --spp 4 --program sky --pixel 0,4 --sample 0";
   EXPECT_THAT(text.out, HasSubstr("    quintet " + command + "\n"));
@@ -45,6 +47,8 @@ TEST_F(Find, PrintsACommandThatExplainsTheSample) {
   withJson.push_back("--json");
   const auto json = nlohmann::json::parse(find(withJson).out);
   EXPECT_EQ(json["notFiniteCount"], 16);
+  EXPECT_EQ(json["notFiniteGroups"], 1);
+  EXPECT_EQ(json["notFinite"].size(), 1u);
   EXPECT_EQ(json["notFinite"][0]["pixel"], nlohmann::json({0, 4}));
   EXPECT_THAT(json["notFinite"][0]["command"].get<std::string>(), HasSubstr(command));
 }

@@ -58,7 +58,8 @@ OptionTable declareFind(FindOptions& options, FindTexts& texts) {
         .target = &texts.threshold},
        {.names = "--limit",
         .value = "N",
-        .help = "Number of samples of each kind to explain; the others are only counted (default: 10)",
+        .help =
+            "Number of groups of adjacent pixels of each kind to explain; the others are only counted (default: 10)",
         .target = &texts.limit},
        {.names = "--json", .help = "Print one JSON object on standard output", .target = &options.console.json}});
   declareSize(table, texts, options, "Search only this part, in pixels from the top left");

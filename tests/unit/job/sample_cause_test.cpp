@@ -43,6 +43,8 @@ TEST(SampleCause, IsTheFirstEventThatIsNotFinite) {
   EXPECT_EQ(cause.field, "weight");
   EXPECT_EQ(cause.lobe, "specular");
   EXPECT_EQ(cause.material, "chrome");
+  EXPECT_EQ(cause.lobeMaterial, "chrome");
+  EXPECT_FALSE(cause.lobeIsBefore);
   EXPECT_EQ(cause.instance, "floor");
   EXPECT_EQ(cause.bounce, 1);
 }
@@ -105,8 +107,26 @@ TEST(SampleCause, IsTheSurfaceWhoseLightWasSampled) {
     EXPECT_EQ(second.instance, "ball");
     EXPECT_EQ(second.material, "chrome");
     EXPECT_EQ(second.lobe, "diffuse");
+    EXPECT_EQ(second.lobeMaterial, "wood") << "not that of the surface whose light was sampled";
+    EXPECT_TRUE(second.lobeIsBefore);
     EXPECT_EQ(second.bounce, 2);
   }
+}
+
+// The light of a surface is that of the next surface, not of the one with the lobe.
+TEST(SampleCause, NamesTheSurfaceOfTheLobe) {
+  PixelExplanation e = somePath();
+  e.events = {event("surface", {{"material", std::string("wood")}}),
+              event("bsdf", {{"lobe", std::string("diffuse")}, {"useful", true}}),
+              event("surface", {{"material", std::string("lamp")}}),
+              event("contribution", {{"source", std::string("surface")},
+                                     {"scatterings", std::int64_t{1}},
+                                     {"value", std::vector<float>{9, 9, 9}}})};
+  const SampleCause cause = causeOf(e, false);
+  EXPECT_EQ(cause.lobe, "diffuse");
+  EXPECT_EQ(cause.lobeMaterial, "wood");
+  EXPECT_EQ(cause.material, "lamp");
+  EXPECT_TRUE(cause.lobeIsBefore);
 }
 
 // A ray may be infinitely long, but NaN is an error.
