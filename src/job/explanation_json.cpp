@@ -75,6 +75,14 @@ class Reader {
     result.plannedSamples = static_cast<std::uint64_t>(integer(json, "", "plannedSamples"));
     result.seed = static_cast<std::uint64_t>(integer(json, "", "seed"));
     result.discarded = member(json, "", "discarded").get<bool>();
+    if (json.contains("origin")) {
+      const Json& origin = json["origin"];
+      result.origin =
+          ValueOrigin{{text(origin, "/origin", "file"), static_cast<int>(integer(origin, "/origin", "line")), 0},
+                      text(origin, "/origin", "stage"),
+                      text(origin, "/origin", "operation"),
+                      member(origin, "/origin", "nan").get<bool>()};
+    }
     result.lostRecords = static_cast<std::uint32_t>(integer(json, "", "lostRecords"));
     const Json& outputs = array(json, "", "outputs");
     for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -186,6 +194,12 @@ std::string explanationJson(const PixelExplanation& e, const std::string& comman
             {"seed", e.seed}};
   if (!command.empty()) json["command"] = command;
   json["discarded"] = e.discarded;
+  if (e.origin)
+    json["origin"] = {{"file", e.origin->location.file},
+                      {"line", e.origin->location.line},
+                      {"stage", e.origin->stage},
+                      {"operation", e.origin->operation},
+                      {"nan", e.origin->isNan}};
   json["lostRecords"] = e.lostRecords;
   json["outputs"] = Json::array();
   for (const ExplainedOutput& output : e.outputs)

@@ -12,6 +12,7 @@
 #include "job/explanation_builder.h"
 #include "job/runnable_program.h"
 #include "job/version.h"
+#include "program/load.h"
 
 namespace quintet::job {
 namespace {
@@ -70,6 +71,8 @@ render::Region regionFor(const program::Program& program, uvec2 pixel) {
   const bool accumulates = program.accumulation == program::Accumulation::program;
   return accumulates && readsOtherPixels(program) ? render::Region{} : render::Region{pixel.x, pixel.y, 1, 1};
 }
+
+bool isNotFinite(const ExplainedOutput& output) { return !isFinite(vec3(output.value)); }
 
 vec4 batchValue(const render::Renderer& renderer, std::size_t output, uvec2 pixel) {
   const render::Region& region = renderer.film().region();
@@ -141,7 +144,8 @@ void PixelExplainer::renderEarlierFrames(std::uint32_t count) {
     if (scene.animated()) scene.setFrame(static_cast<float>(frame));
     if (frame < count) renderer_.renderFrame(frame);
   }
-  instrumented_->restoreFilm(renderer_.saveFilm());
+  earlier_ = renderer_.saveFilm();
+  instrumented_->restoreFilm(*earlier_);
 }
 
 PixelExplanation PixelExplainer::record(uvec2 pixel, std::uint32_t sample) {
@@ -165,8 +169,25 @@ PixelExplanation PixelExplainer::record(uvec2 pixel, std::uint32_t sample) {
     result.outputs.push_back({outputs[i].name, batchValue(renderer_, i, pixel), batchValue(*instrumented_, i, pixel)});
   }
   const PreparedScene& scene = *job_.scene();
+  if (result.discarded || std::ranges::any_of(result.outputs, isNotFinite)) result.origin = findOrigin(pixel, sample);
   result.events = buildEvents(log, program_, {scene.instanceNames, scene.materialNames, scene.lightNames}, pixel);
   return result;
+}
+
+// Built-in programs are not the user's, and their variants take long to compile.
+std::optional<ValueOrigin> PixelExplainer::findOrigin(uvec2 pixel, std::uint32_t sample) {
+  const ResolvedJob& job = job_.resolved();
+  if (program::isBuiltIn(job.program)) return std::nullopt;
+  if (!origins_ || originsOf_ != pixel) {
+    origins_.reset();
+    origins_ = std::make_unique<ValueOriginFinder>(engine_, *job_.scene()->onDevice, job.program, explainedOutputs(job),
+                                                   renderer_.settings(), pixel);
+    originsOf_ = pixel;
+  }
+  return origins_->find([&](render::Renderer& renderer) {
+    if (earlier_) renderer.restoreFilm(*earlier_);
+    renderer.renderPixel(pixel, sample);
+  });
 }
 
 PixelExplanation PixelExplainer::facts() const {

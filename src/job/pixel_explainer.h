@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "job/engine.h"
 #include "job/observer.h"
 #include "job/pixel_explanation.h"
 #include "job/render_job.h"
+#include "job/value_origin.h"
 #include "job/view.h"
 #include "render/renderer/renderer.h"
 #include "render/renderer/shader_log.h"
@@ -55,6 +57,7 @@ class PixelExplainer {
   void makeInstrumented(render::RenderSettings settings);
   void renderEarlierFrames(std::uint32_t count);
   PixelExplanation record(uvec2 pixel, std::uint32_t sample);
+  std::optional<ValueOrigin> findOrigin(uvec2 pixel, std::uint32_t sample);
   PixelExplanation facts() const;
 
   Engine& engine_;
@@ -65,6 +68,9 @@ class PixelExplainer {
   std::unique_ptr<render::Renderer> own_;           // of the program as it is; null if it is that of the job
   render::Renderer& renderer_;                      // of the program as it is
   std::unique_ptr<render::Renderer> instrumented_;  // with program_ and log_
+  std::optional<render::FilmState> earlier_;        // of the frames before the explained one
+  std::unique_ptr<ValueOriginFinder> origins_;      // of originsOf_; null until a value is not finite
+  uvec2 originsOf_{0};
 };
 
 }  // namespace quintet::job

@@ -3,7 +3,13 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace quintet::job {
+
+std::string originText(const ValueOrigin& origin) {
+  return fmt::format("the result of this {} is {}", origin.operation, origin.isNan ? "NaN" : "infinite");
+}
 
 const EventValue* ExplainedEvent::find(std::string_view name) const {
   const auto found = std::ranges::find(fields, name, [](const auto& field) { return std::string_view(field.first); });

@@ -5,12 +5,14 @@
 #define QUINTET_JOB_PIXEL_EXPLANATION_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "base/math.h"
 
 namespace quintet::job {
@@ -43,6 +45,17 @@ struct ExplainedOutput {
   vec4 recorded{0.0f};  // of its instrumented variant; the same up to rounding
 };
 
+// The first operation of a sample whose result is not finite.
+struct ValueOrigin {
+  SourceLocation location;
+  std::string stage;      // file
+  std::string operation;  // "division", "sqrt", "read of an image"
+  bool isNan = false;     // else the result is infinite
+};
+
+// "the result of this division is NaN"
+std::string originText(const ValueOrigin& origin);
+
 struct PixelExplanation {
   // What was explained.
   std::string scene;       // path or name
@@ -59,7 +72,9 @@ struct PixelExplanation {
 
   std::vector<ExplainedOutput> outputs;
   std::vector<ExplainedEvent> events;
-  bool discarded = false;         // the program discarded the sample, because its value is not finite
+  bool discarded = false;  // the program discarded the sample, because its value is not finite
+  // If the value is not finite, and the program is not built in: the first operation whose result is not finite.
+  std::optional<ValueOrigin> origin{};
   std::uint32_t lostRecords = 0;  // that did not fit into the log
 };
 

@@ -75,6 +75,15 @@ program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& c
                             counts ? program::Instrumentation::recursion : program::Instrumentation::none, probes);
 }
 
+std::vector<program::ValueSite> addValueProbes(CheckedProgram& checked, const shader::Compiler& compiler,
+                                               const render::Defines& defines) {
+  program::RunnableProgram& runnable = checked.runnable;
+  const bool counts = runnable.countsRecursion;
+  return program::addValueProbes(runnable.compiled, runnable.description, compiler,
+                                 counts ? recursionDefines(runnable, defines) : defines,
+                                 counts ? program::Instrumentation::recursion : program::Instrumentation::none);
+}
+
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
                                const check::DeviceLimits& limits, program::Instrumentation instrumentation) {

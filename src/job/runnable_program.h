@@ -43,6 +43,11 @@ program::Probes requestedProbes(const RenderRequest& request, const program::Pro
 program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines,
                               program::Probes probes);
 
+// Replaces all stages by variants that log which values are not finite (program/probes.h). After countRecursion(), with the
+// same `defines`. Throws ProgramError.
+std::vector<program::ValueSite> addValueProbes(CheckedProgram& checked, const shader::Compiler& compiler,
+                                               const render::Defines& defines);
+
 // `defines` are those of render::renderDefines. The result has Instrumentation::checks or explain on request; without
 // checks, the program counts its recursion if necessary. Throws ProgramError.
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,

@@ -257,6 +257,7 @@ class Search {
         const PixelExplanation explanation = explainer.explain(samples[i].pixel, samples[i].sample, observer_);
         samples[i].value = sumContributions(explanation);
         samples[i].cause = causeOf(explanation, notFinite);
+        samples[i].cause.origin = explanation.origin;
         progress.samples += 1;
         progress.seconds = clock.seconds();
         observer_.progress(progress);

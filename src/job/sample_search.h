@@ -38,6 +38,7 @@ struct SampleCause {
   std::string field;          // of the event, that is not finite; empty for fireflies
   std::string lobeMaterial;   // of the surface at which the lobe was sampled
   bool lobeIsBefore = false;  // by the lobe, the path has reached the latest surface from the one before
+  std::optional<ValueOrigin> origin{};  // PixelExplanation::origin
 };
 
 // The first sample, or the brightest firefly, of a group of adjacent pixels.

@@ -345,6 +345,12 @@ std::string values(const PixelExplanation& e, std::size_t width) {
   }
   if (e.discarded)
     text += wrapped("The program discarded the sample, because its value is not finite.", width, 0) + "\n";
+  if (e.origin)
+    text += wrapped(fmt::format("The first value that is not finite: {}, {}.",
+                                printable(locationText(e.origin->location.file, e.origin->location.line, 0)),
+                                job::originText(*e.origin)),
+                    width, 0) +
+            "\n";
   if (e.lostRecords > 0)
     text += wrapped(fmt::format("{} did not fit into the log; the end of the tree is missing.",
                                 counted(e.lostRecords, "record")),

@@ -31,7 +31,10 @@ std::string causeText(const job::SampleCause& cause) {
   if (!cause.material.empty() && (cause.lobe.empty() || cause.lobeIsBefore || cause.lobeMaterial.empty()))
     add((cause.lobeIsBefore ? "then " : "") + materialText(cause.material));
   if (!cause.instance.empty()) add("instance \"" + printable(cause.instance) + "\"");
-  if (!cause.field.empty())
+  if (cause.origin)
+    add(fmt::format("{}: {}", printable(locationText(cause.origin->location.file, cause.origin->location.line, 0)),
+                    job::originText(*cause.origin)));
+  else if (!cause.field.empty())
     add(fmt::format("{} of {} is not finite", printable(cause.field), cause.event));
   return text;
 }
@@ -88,6 +91,9 @@ Json sampleJson(const job::FoundSample& found, const CommandFor& commandFor) {
                                    {"event", cause.event},
                                    {"field", cause.field}})
     json[name] = text.empty() ? Json() : Json(text);
+  json["file"] = cause.origin ? Json(cause.origin->location.file) : Json();
+  json["line"] = cause.origin ? Json(cause.origin->location.line) : Json();
+  json["operation"] = cause.origin ? Json(cause.origin->operation) : Json();
   json["command"] = commandFor(found);
   return json;
 }

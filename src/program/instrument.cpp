@@ -98,6 +98,11 @@ std::string probedStage(const std::string& source, shader::Stage stage, Probes p
     before += "  heatKeep_();\n  heatBegin_();\n";
     after = "  heatEnd_();\n";
   }
+  if (probes.values) {
+    defines += "#define QUINTET_VALUES 1\n";
+    includes += "#include <quintet/values.glsl>\n";
+    before += "  valuesKeep_();\n";
+  }
   return insertAfterHead(source, defines + includeLines(source, includes, usesLibrary) + "#define main probedMain_\n") +
          "\n#undef main\nvoid main() {\n" + before + "  probedMain_();\n" + after + "}\n";
 }

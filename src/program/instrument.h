@@ -29,11 +29,12 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
 // What an instrumented variant of a stage records (program/probes.h).
 struct Probes {
   bool prints = false;
-  bool heat = false;  // counts for heat maps
+  bool heat = false;    // counts for heat maps
+  bool values = false;  // operations whose result is not finite
 };
 
-// Returns the source of a stage with the functions of quintet/print.glsl and quintet/heat.glsl, for
-// spirv::replacePrintCalls and spirv::addTraceCalls. `source` can have the checks of the recursion, but not all checks.
+// Returns the source of a stage with the functions of quintet/print.glsl, quintet/heat.glsl and
+// quintet/values.glsl, for spirv::replacePrintCalls, spirv::addTraceCalls and spirv::addValueChecks. `source` can have the checks of the recursion, but not all checks.
 // `accumulates`: the program averages its own frames. `usesLibrary` as above.
 std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates,
                         bool usesLibrary = true);

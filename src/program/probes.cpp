@@ -11,6 +11,7 @@
 #include "spirv/module.h"
 #include "spirv/print_calls.h"
 #include "spirv/trace_calls.h"
+#include "spirv/value_checks.h"
 
 namespace quintet::program {
 namespace {
@@ -104,6 +105,47 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
     compiled.stages[stages[k].index].spirv = compiler.optimize(spirv);
   });
   return table;
+}
+
+std::vector<ValueSite> addValueProbes(CompiledProgram& compiled, const Program& program,
+                                      const shader::Compiler& compiler,
+                                      const std::vector<std::pair<std::string, std::string>>& defines,
+                                      Instrumentation instrumentation) {
+  const bool accumulates = program.accumulation == Accumulation::program;
+  std::vector<shader::Result> results(compiled.stages.size());
+  parallelFor(results.size(), [&](std::size_t i) {
+    const std::string& file = compiled.stages[i].file;
+    shader::Source source = stageSource(program, file, i, defines, instrumentation);
+    source.text = probedStage(source.text, source.stage, {.values = true}, accumulates, usesLibrary(program, file));
+    source.optimize = false;  // the functions of the probes would be inlined
+    results[i] = compiler.compile(source);
+  });
+  std::vector<ValueSite> sites;
+  std::vector<std::uint32_t> firsts;
+  std::vector<Diagnostic> diagnostics;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    firsts.push_back(static_cast<std::uint32_t>(sites.size()));
+    if (!results[i].ok()) {
+      for (Diagnostic& d : results[i].diagnostics) {
+        d.file = userFile(program, d.file);
+        addUnique(diagnostics, std::move(d));
+      }
+      continue;
+    }
+    std::optional<spirv::Module> module = spirv::Module::read(results[i].spirv);
+    if (!module) continue;
+    for (const auto& [file, text] : program.files) module->addSource(program.path(file), text);
+    for (const spirv::CheckedValue& value : spirv::findCheckedValues(*module)) {
+      SourceLocation location = module->location(module->instructions()[value.instruction]);
+      location.file = userFile(program, location.file);
+      sites.push_back({std::move(location), compiled.stages[i].file, std::string(value.operation)});
+    }
+  }
+  if (!diagnostics.empty()) throw ProgramError(std::move(diagnostics));
+  parallelFor(results.size(), [&](std::size_t i) {
+    compiled.stages[i].spirv = compiler.optimize(spirv::addValueChecks(results[i].spirv, firsts[i]));
+  });
+  return sites;
 }
 
 }  // namespace quintet::program

@@ -35,5 +35,20 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
                      const std::vector<std::pair<std::string, std::string>>& defines, Instrumentation instrumentation,
                      Probes probes);
 
+// An operation whose result can be the first value that is not finite.
+struct ValueSite {
+  SourceLocation location;  // in the stage's file or an included one
+  std::string stage;        // file, as in CompiledProgram::Stage
+  std::string operation;    // "division", "sqrt"
+};
+
+// Replaces all stages of `compiled` by variants that store in the shader log (kLogValue) which operations have a result that
+// is not finite, in the order in which they are executed. Returns the operations by their numbers in the log. The other
+// arguments, and the errors, are those of addProbes(). The variants of large programs take long to compile.
+std::vector<ValueSite> addValueProbes(CompiledProgram& compiled, const Program& program,
+                                      const shader::Compiler& compiler,
+                                      const std::vector<std::pair<std::string, std::string>>& defines,
+                                      Instrumentation instrumentation);
+
 }  // namespace quintet::program
 #endif

@@ -36,13 +36,14 @@ TEST_F(Find, PrintsACommandThatExplainsTheSample) {
   EXPECT_THAT(text.out,
               HasSubstr("16 samples that are not finite in 1 group of adjacent pixels\n  pixel 0,4, sample 0: nan"));
   EXPECT_THAT(text.out, HasSubstr("(4 adjacent pixels from 0,4 to 3,4; 16 samples)\n"));
-  EXPECT_THAT(text.out, HasSubstr("value of store is not finite\n"));
+  EXPECT_THAT(text.out, HasSubstr("sky/sky.rmiss:6: the result of this sqrt is NaN\n")) << "not the store";
   const std::string command = "explain-pixel scene.gltf --size 16x12 --spp 4 --program sky --pixel 0,4 --sample 0";
   EXPECT_THAT(text.out, HasSubstr("    quintet " + command + "\n"));
   const RunResult explained = quintet({"explain-pixel", "scene.gltf", "--size", "16x12", "--spp", "4", "--program",
                                        "sky", "--pixel", "0,4", "--sample", "0"});
   EXPECT_EQ(explained.status, 0) << explained.err;
   EXPECT_THAT(explained.out, HasSubstr("nan nan nan"));
+  EXPECT_THAT(explained.out, HasSubstr("The first value that is not finite: sky/sky.rmiss:6, the result of this sqrt"));
   std::vector<std::string> withJson = arguments;
   withJson.push_back("--json");
   const auto json = nlohmann::json::parse(find(withJson).out);
@@ -50,7 +51,20 @@ TEST_F(Find, PrintsACommandThatExplainsTheSample) {
   EXPECT_EQ(json["notFiniteGroups"], 1);
   EXPECT_EQ(json["notFinite"].size(), 1u);
   EXPECT_EQ(json["notFinite"][0]["pixel"], nlohmann::json({0, 4}));
+  EXPECT_EQ(json["notFinite"][0]["line"], 6);
+  EXPECT_EQ(json["notFinite"][0]["operation"], "sqrt");
   EXPECT_THAT(json["notFinite"][0]["command"].get<std::string>(), HasSubstr(command));
+}
+
+// The first value that is not finite is an infinity, in an included file; NaN follows from it.
+TEST_F(Find, NamesTheOperationThatMadeAnInfinity) {
+  writeSkyProgram(folder_ / "sky", "payload.color = spread(gl_WorldRayDirectionEXT);");
+  write(folder_ / "sky" / "payload.glsl",
+        "struct Payload {\n  vec3 color;\n};\nvec3 spread(vec3 v) {\n  const float zero = min(dot(v, v), 0.0);\n"
+        "  const vec3 scaled = v / zero;\n  return scaled * zero;\n}\n");
+  const RunResult text = find({"--program", "sky", "--nan", "--region", "0,4,2,1"});
+  EXPECT_EQ(text.status, 1) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("payload.glsl:6: the result of this division is infinite\n"));
 }
 
 TEST_F(Find, CtrlCEndsTheSearch) {

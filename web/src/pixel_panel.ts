@@ -107,6 +107,18 @@ export class PixelPanel {
     this.say(explanation.discarded ? "The program discarded this sample, because it is not finite." : "");
     if (explanation.lostRecords) this.say(`${explanation.lostRecords} records did not fit into the log.`);
     const outputs = explanation.outputs.map((output) => this.output(output.name, output.value));
+    const origin = explanation.origin;
+    if (origin)
+      outputs.unshift(
+        this.item({
+          kind: "origin",
+          title: "First value that is not finite",
+          facts: [["operation", origin.operation], ["result", origin.nan ? "NaN" : "infinite"]],
+          file: origin.file,
+          line: origin.line,
+          children: [],
+        }),
+      );
     const contributions = explanation.contributions.map((contribution) =>
       this.item({
         kind: "contribution",

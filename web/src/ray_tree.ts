@@ -23,6 +23,7 @@ export interface Explanation {
   contributions: { source: string; value: Value; scatterings?: number; ray?: number }[];
   events: ExplanationEvent[];
   discarded?: boolean;
+  origin?: { file: string; line: number; stage: string; operation: string; nan: boolean }; // of a value that is not finite
   lostRecords?: number;
 }
 

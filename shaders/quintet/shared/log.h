@@ -11,6 +11,7 @@ QT_SHARED_BEGIN
 // LogRecord::kind
 QT_CONSTANT kLogEnd = 0u;    // no further record: the next one did not fit
 QT_CONSTANT kLogPrint = 1u;  // debugPrintfEXT: number of the call, then the words of its arguments
+QT_CONSTANT kLogValue = 2u;  // number of an operation whose result is not finite; 1: NaN, 0: infinite (values.glsl)
 
 struct LogHeader {
   uint capacity;     // in: words after this header

@@ -46,6 +46,31 @@ TEST(InstrumentedRun, RendersTheRequestedSizeAndRegion) {
   EXPECT_THROW(idsFor(request), UsageError);
 }
 
+// Not the line of the store.
+TEST(InstrumentedRun, NamesTheLineThatMadeAValueNotFinite) {
+  static Engine engine({});
+  const program::Program program = program::parseLecture(
+      "float half_(float x) { return 0.5 * x; }\n"
+      "void main() { /**** RAY GENERATION SHADER ****/\n"
+      "  float x = float(gl_LaunchIDEXT.x) - 3.0;\n"
+      "  float ratio = x\n"
+      "    / x;\n"
+      "  vec3 color = vec3(half_(ratio));\n"
+      "  gsnSetPixel(vec4(color, 1.0)); }\n",
+      "demo.rt.glsl", "here");
+  RenderRequest request;
+  request.size = {8, 4};
+  const std::vector<Diagnostic> found =
+      runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].id, "Q002");
+  EXPECT_EQ(found[0].file, "here/demo.rt.glsl");
+  EXPECT_GE(found[0].line, 4);
+  EXPECT_LE(found[0].line, 5);
+  EXPECT_EQ(found[0].text.find("the result of this division is NaN; output '"), 0u) << found[0].text;
+  EXPECT_NE(found[0].text.find("4 such pixels"), std::string::npos) << found[0].text;
+}
+
 TEST(InstrumentedRun, RendersTheRequestedFramesAndParameters) {
   RenderRequest request;
   request.size = {256, 8};

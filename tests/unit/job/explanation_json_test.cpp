@@ -53,6 +53,22 @@ TEST(ExplanationJson, KeepsNan) {
   EXPECT_TRUE(std::isnan(after.events[0].number("n")));
 }
 
+TEST(ExplanationJson, KeepsTheOriginOfAValueThatIsNotFinite) {
+  PixelExplanation e = somePath();
+  EXPECT_FALSE(parseExplanation(explanationJson(e), "a.json").origin);
+  e.origin = ValueOrigin{{"sky/sky.rmiss", 6, 0}, "sky.rmiss", "division", true};
+  const std::optional<ValueOrigin> after = parseExplanation(explanationJson(e), "a.json").origin;
+  ASSERT_TRUE(after);
+  EXPECT_EQ(after->location.file, "sky/sky.rmiss");
+  EXPECT_EQ(after->location.line, 6);
+  EXPECT_EQ(after->operation, "division");
+  EXPECT_TRUE(after->isNan);
+  EXPECT_EQ(originText(*after), "the result of this division is NaN");
+  std::string wrong = explanationJson(e);
+  wrong.replace(wrong.find("\"division\""), 10, "7");
+  EXPECT_THAT(problemOf(wrong), testing::HasSubstr("/origin/operation"));
+}
+
 // Users can choose names that are also texts of numbers.
 TEST(ExplanationJson, KeepsNames) {
   PixelExplanation e = somePath();

@@ -48,9 +48,9 @@ const std::map<std::string, std::vector<Stage>> kSupported{
 bool isInternal(const std::string& path) {
   return path.starts_with("quintet/gsn") || path.starts_with("quintet/names_") || path == "quintet/explain.glsl" ||
          path == "quintet/heat.glsl" || path == "quintet/instrument.glsl" || path == "quintet/log.glsl" ||
-         path == "quintet/print.glsl" || path == "quintet/recursion.glsl" || path.starts_with("quintet/stages/") ||
-         path.starts_with("quintet/passes/film_") || path.starts_with("quintet/passes/deform_") ||
-         path == "quintet/passes/tree_cost.glsl";
+         path == "quintet/print.glsl" || path == "quintet/values.glsl" || path == "quintet/recursion.glsl" ||
+         path.starts_with("quintet/stages/") || path.starts_with("quintet/passes/film_") ||
+         path.starts_with("quintet/passes/deform_") || path == "quintet/passes/tree_cost.glsl";
 }
 
 std::vector<std::string> headers() {
