@@ -126,6 +126,8 @@ using Command = std::variant<Orbit, Pan, Zoom, Fly, Frame, SetOrbitCenter, SetCa
 // What a command changes: the kind of the command and its target. Commands of the same group, one after the other, are
 // one step of undo; an empty group is a step of its own.
 std::string undoGroup(const Command& command);
+// What a step of undo changes, for a menu: "move of 'Lamp'". Empty for commands that are no steps.
+std::string undoName(const Command& command);
 
 }  // namespace quintet::job::interactive
 #endif

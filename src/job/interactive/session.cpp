@@ -235,7 +235,7 @@ void Session::apply(const Command& command) {
   else if (isRedo)
     history_.redo(std::move(before));
   else
-    history_.add(std::move(before), undoGroup(command));
+    history_.add(std::move(before), undoGroup(command), interactive::undoName(command));
 }
 
 // The state after a command. It is checked when it is shown.
@@ -800,6 +800,15 @@ io::Image Session::image() const {
 RenderResult Session::result() const { return job_->result(true); }
 
 render::RayCount Session::rays() const { return job_->renderer().rays(); }
+
+std::vector<uvec2> Session::droppedPixels(std::size_t limit) const {
+  job_->renderer().finish();
+  const std::vector<uvec2> statistics = job_->renderer().film().downloadStatistics();
+  std::vector<uvec2> pixels;
+  for (std::size_t i = 0; i < statistics.size() && pixels.size() < limit; ++i)
+    if (statistics[i].y > 0) pixels.push_back(render::pixelAt(job_->region(), i));
+  return pixels;
+}
 
 void Session::requirePixel(uvec2 pixel) const {
   if (pixel.x >= state_.size.x || pixel.y >= state_.size.y)

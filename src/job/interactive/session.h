@@ -106,6 +106,8 @@ class Session {
   void apply(const Command& command);
   bool canUndo() const { return history_.canUndo(); }
   bool canRedo() const { return history_.canRedo(); }
+  std::string undoName() const { return history_.undoName(); }  // undoName() of the command; empty without a step
+  std::string redoName() const { return history_.redoName(); }
 
   // Renders for about this time, at least one image if there is work, and returns what happened since the last step.
   // Returns at once if a command has only changed how the image is displayed.
@@ -134,6 +136,8 @@ class Session {
   // result() has samples at that size, of the complete program.
   bool hasFullSize() const { return samples_ > 0 && filmSize_ == state_.size && !job_->showsDraft(); }
   render::RayCount rays() const;  // since the last restart; waits for the device, so not for each image
+  // Pixels of the image, of which the program has discarded a sample that was not finite; at most `limit`. As rays().
+  std::vector<uvec2> droppedPixels(std::size_t limit) const;
   // Call it with an error that one of the functions above, or a use of their result, has thrown: the next step() renders
   // the image again on a new device. Returns false if the session gave up after kMaxDeviceLosses losses.
   bool recoverFrom(const DeviceLostError& error);
@@ -156,6 +160,8 @@ class Session {
   // SetPrint; unset if nothing is printed.
   const std::optional<PrintRequest>& print() const { return job_->resolved().request.print; }
   bool callsPrint() const { return job_->callsPrint(); }  // the program has calls of debugPrintfEXT
+
+  const WatchList& watchedFiles() const { return watched_; }  // whose saves reload the program
 
   const SessionState& state() const { return state_; }
   const program::Program& program() const { return job_->resolved().program; }

@@ -25,6 +25,17 @@ TEST(UndoGroup, HasTheNamesOfProperties) {
   EXPECT_NE(undoGroup(EditMaterial{"m", {{"on", {1}}}}), undoGroup(EditLight{"m", {{"on", {1}}}}));
 }
 
+TEST(UndoName, SaysWhatChanges) {
+  EXPECT_EQ(undoName(Move{"Lamp"}), "move of 'Lamp'");
+  EXPECT_EQ(undoName(EditMaterial{"Gold", {{"roughness", {1}}}}), "roughness of 'Gold'");
+  EXPECT_EQ(undoName(EditLight{"Sun", {{"color", {1, 1, 1}}, {"intensity", {2}}}}), "2 properties of 'Sun'");
+  EXPECT_EQ(undoName(SetParameter{"bounces", "3"}), "parameter 'bounces'");
+  EXPECT_EQ(undoName(SetLens{.apertureRadius = 1.0f}), "aperture");
+  EXPECT_EQ(undoName(SetEnvironment{.rotation = 90.0f}), "rotation of the environment");
+  EXPECT_EQ(undoName(Frame{}), "view of the scene");
+  EXPECT_EQ(undoName(Undo{}), "") << "not a step";
+}
+
 TEST(UndoGroup, IsEmptyForStepsOfTheirOwn) {
   EXPECT_EQ(undoGroup(SetProgram{"ao"}), "");
   EXPECT_EQ(undoGroup(SelectOutput{"color"}), "");

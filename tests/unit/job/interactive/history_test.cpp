@@ -64,6 +64,21 @@ TEST(SessionHistory, DropsAStep) {
   EXPECT_FALSE(edited.history.canRedo());
 }
 
+TEST(SessionHistory, KeepsTheNamesOfSteps) {
+  History<int> history;
+  EXPECT_EQ(history.undoName(), "");
+  history.add(0, "", "exposure");
+  history.add(1, "orbit", "turn of the camera");
+  history.add(2, "orbit", "a part of the same step");
+  EXPECT_EQ(history.undoName(), "turn of the camera");
+  EXPECT_EQ(history.redoName(), "");
+  history.undo(3);
+  EXPECT_EQ(history.undoName(), "exposure");
+  EXPECT_EQ(history.redoName(), "turn of the camera");
+  history.redo(1);
+  EXPECT_EQ(history.undoName(), "turn of the camera");
+}
+
 TEST(SessionHistory, AGroupIsOneStep) {
   Edited edited;
   edited.set(1, "orbit");
