@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <thread>
@@ -24,18 +25,24 @@
 #include "render/renderer/renderer.h"
 #include "reproduce.h"
 #include "view_files.h"
+#include "viewer/edit_script.h"
 
 namespace quintet::viewer {
 namespace {
 
 constexpr double kFrameSeconds = 1.0 / 60.0;
 constexpr double kIdleSeconds = 0.5;
-constexpr double kResizeSeconds = 0.15;  // the size of the image follows that of the window after this time
+constexpr double kWaitingSeconds = 0.1;      // between frames that show how long the work takes
+constexpr double kResizeSeconds = 0.15;      // the size of the image follows that of the window after this time
+constexpr double kCheapSeconds = 3.0;        // of rendering, which a new size may discard without a question
+constexpr double kClosingSeconds = 1.0;      // the process does not wait longer for a launch when the window is closed
+constexpr double kBlockedHintSeconds = 2.0;  // after which the window shows that a launch takes long
 constexpr int kStableFrames = 3;
 constexpr int kMaxLosses = 3;                           // of the device that presents, in sequence
 constexpr double kStableSeconds = 60;                   // after which a loss is not a repetition
 constexpr std::chrono::milliseconds kReopenPause{250};  // a driver can need some time after a reset
 constexpr float kMinImageSide = 4.0f;                   // pixels; smaller areas keep the last size
+constexpr float kEdgeWidth = 8.0f;                      // of the panels, pixels at scale 1
 constexpr double kExposureStep = 1.0 / 3.0;             // stops
 
 ViewState initialState(const ApplicationOptions& options) {
@@ -46,6 +53,12 @@ ViewState initialState(const ApplicationOptions& options) {
   if (options.windowSize) state.settings.windowSize = *options.windowSize;
   if (options.session && options.session->render.size.x > 0) state.fixedSize = options.session->render.size;
   return state;
+}
+
+// "Undo move of 'Lamp'". The part after "##" keeps the same menu item if the name changes.
+std::string stepLabel(const char* verb, const std::string& name) {
+  if (name.empty()) return verb;
+  return fmt::format("{} {}##{}", verb, fittingText(name, 20.0f * ImGui::GetFontSize()), verb);
 }
 
 std::filesystem::path baseName(const Snapshot& snapshot) {
@@ -77,6 +90,7 @@ Application::Application(ApplicationOptions options)
       SessionThread::Options{options_.engine, [] { Window::wake(); }, options_.onEvent});
   state_.session = session_.get();
   state_.snapshot = session_->snapshot();
+  if (options_.restarted && options_.restarted->position) window_.setPosition(*options_.restarted->position);
   pendingSession_ = options_.session;
   if (options_.logsWidgets)
     setWidgetLog([this](const std::string& name, vec2 least, vec2 most) { logWidget(name, least, most); });
@@ -84,26 +98,34 @@ Application::Application(ApplicationOptions options)
 
 Application::~Application() {
   setWidgetLog({});
-  if (options_.storesSettings) {
-    const uvec2 size = window_.windowedSize();
-    if (size.x > 1 && size.y > 1) state_.settings.windowSize = size;
-    storeSettings(state_);
-  }
+  keepSettings();
 }
 
 void Application::run() {
   while (!quit_ && !window_.shouldClose()) frame(waitTime());
+  // A thread cannot be ended, and a launch that hangs would keep the process for minutes.
+  if (session_->blockedSeconds() < kClosingSeconds) return;
+  keepSettings();
+  std::_Exit(0);
+}
+
+void Application::keepSettings() {
+  if (!options_.storesSettings) return;
+  const uvec2 size = window_.windowedSize();
+  if (size.x > 1 && size.y > 1) state_.settings.windowSize = size;
+  storeSettings(state_);
 }
 
 double Application::waitTime() const {
   if (framesToDraw_ > 0) return 0;
   if (state_.playing || navigator_.flying() || state_.snapshot->phase == Snapshot::Phase::loading) return kFrameSeconds;
-  if (state_.ready() && !state_.fixedSize && wantedSize_ != imageSize_) return kResizeSeconds / 3;
+  if (state_.ready() && !state_.fixedSize && !state_.keptSize && wantedSize_ != imageSize_) return kResizeSeconds / 3;
+  if (state_.waitingSince) return kWaitingSeconds;
   return kIdleSeconds;
 }
 
 void Application::frame(double wait) {
-  events_ = window_.waitForEvents(wait);
+  events_ = window_.waitForEvents(wait, dialog_.awaitsFocus());
   const double now = clock_.seconds();
   const double elapsed = now - std::exchange(lastFrame_, now);
   state_.time = now;
@@ -122,6 +144,7 @@ void Application::frame(double wait) {
   gui_->setScale(state_.scale);
   gui_->beginFrame();
   const Area area = layOut();
+  std::erase_if(events_, [&](const InputEvent& event) { return closeTopmost(event); });
   performAll(navigator_.handle(state_, events_, area));
   navigator_.fly(state_, std::min(elapsed, 0.1));
   if (state_.playing) play();
@@ -132,6 +155,19 @@ void Application::frame(double wait) {
   chooseImageSize(area);
   requestDisplay();
   draw(list);
+  handleBlockedWork();
+}
+
+// Escape in menus, lists and fields. In all else, it is an action.
+bool Application::closeTopmost(const InputEvent& event) {
+  const auto* key = std::get_if<KeyEvent>(&event);
+  if (!key || !key->pressed || key->key != "Escape") return false;
+  if (Gui::closePopups()) return true;
+  if (dialog_.visible() && Gui::wantsKeyboard()) {
+    dialog_.close();
+    return true;
+  }
+  return false;
 }
 
 // ---- Between the threads
@@ -157,6 +193,17 @@ void Application::receive() {
   if (state_.ready() && last->state.exposure != state_.snapshot->state.exposure)
     confirmExposure(state_.snapshot->state.exposure);
   if (last->diagnostics.size() != state_.snapshot->diagnostics.size()) state_.showDiagnostics = true;
+  if (state_.snapshot->phase != Snapshot::Phase::loading)
+    state_.loadingSince.reset();
+  else if (!state_.loadingSince || last->session != state_.snapshot->session)
+    state_.loadingSince = state_.time;
+  const bool waits = state_.ready() && (!state_.snapshot->image || !state_.snapshot->stage.empty() ||
+                                        session_->blockedSeconds() > kBlockedHintSeconds);
+  if (!waits)
+    state_.waitingSince.reset();
+  else if (!state_.waitingSince)
+    state_.waitingSince = state_.time;
+  if (last->imageNumber != state_.snapshot->imageNumber) imageTime_ = state_.time;
   if (state_.ready() && last->imageNumber != state_.snapshot->imageNumber) {
     if (state_.snapshot->secondsPerImage > 0)
       state_.imageRates.add(static_cast<float>(1.0 / state_.snapshot->secondsPerImage));
@@ -180,7 +227,8 @@ void Application::setExplanation() {
                         known ? explainingCommand(snapshot, explanation->pixel, explanation->sample) : "");
 }
 
-// The image has the pixels of its area, unless its size is fixed.
+// The image has the pixels of its area, unless its size is fixed. A change of the size discards the samples. Therefore, if
+// they took long, the image is scaled until the user asks for the new size (Action::fitImage).
 void Application::chooseImageSize(const Area& area) {
   if (state_.fixedSize) {
     wantedSize_ = imageSize_ = *state_.fixedSize;
@@ -191,21 +239,72 @@ void Application::chooseImageSize(const Area& area) {
     wantedSize_ = size;
   }
   state_.viewSize = wantedSize_;
-  if (pendingSession_ && wantedSize_.x > 0) {
-    job::interactive::SessionRequest request = *std::exchange(pendingSession_, std::nullopt);
-    imageSize_ = wantedSize_;
-    request.render.size = wantedSize_;
-    if (!request.render.scene.empty()) addRecentFile(state_.settings, request.render.scene.string());
-    session_->open(std::move(request));
-    return;
-  }
+  if (pendingSession_ && wantedSize_.x > 0) return openFirst();
+  const bool asked = std::exchange(state_.fitsImage, false);
+  state_.keptSize = false;
   if (!state_.ready() || state_.fixedSize) return;
   if (wantedSize_ == state_.snapshot->state.size) {
     imageSize_ = wantedSize_;
-  } else if (wantedSize_ != imageSize_ && state_.time - wantedSince_ >= kResizeSeconds) {
-    imageSize_ = wantedSize_;
-    state_.apply(job::interactive::SetSize{wantedSize_, /*ofWindow=*/true});
+  } else if (wantedSize_ != imageSize_ && (asked || state_.time - wantedSince_ >= kResizeSeconds)) {
+    if (asked || lostSeconds() < kCheapSeconds) {
+      imageSize_ = wantedSize_;
+      state_.apply(job::interactive::SetSize{wantedSize_, /*ofWindow=*/true});
+    } else {
+      state_.keptSize = true;
+    }
   }
+}
+
+// The size of the image is known now.
+void Application::openFirst() {
+  job::interactive::SessionRequest request = *std::exchange(pendingSession_, std::nullopt);
+  imageSize_ = wantedSize_;
+  request.render.size = wantedSize_;
+  const std::optional<RestartNote>& note = options_.restarted;
+  if (note && !note->error.empty())
+    return session_->openAfterSave(std::move(request), note->script, note->error, note->diagnostics);
+  if (!request.render.scene.empty()) addRecentFile(state_.settings, request.render.scene.string());
+  session_->open(std::move(request), note ? note->script : std::vector<std::string>());
+}
+
+// Of rendering, if the samples are discarded now.
+double Application::lostSeconds() const {
+  const job::interactive::ImageUpdated& image = state_.snapshot->progress;
+  if (!state_.snapshot->image || image.factor > 1) return 0;
+  return image.seconds + (image.complete ? 0.0 : state_.time - imageTime_);
+}
+
+// ---- Work that does not end
+
+// Only the end of the process ends the threads of a driver that work on an endless launch.
+void Application::handleBlockedWork() {
+  const Snapshot& snapshot = *state_.snapshot;
+  if (snapshot.phase == Snapshot::Phase::failed && snapshot.hung)
+    restart(snapshot.error, snapshot.diagnostics);
+  else if (std::exchange(state_.stopsWork, false))
+    restart("The work was stopped", {});
+  else if (session_->savedWhileBlocked())
+    restart({}, {});
+}
+
+// `error`: the new process waits for a save; empty if it renders at once. Has no effect if the process cannot be replaced.
+void Application::restart(const std::string& error, const std::vector<Diagnostic>& diagnostics) {
+  if (std::exchange(cannotRestart_, true) || !state_.snapshot->request) return;
+  RestartNote note;
+  note.error = error;
+  note.diagnostics = diagnostics;
+  note.position = window_.position();
+  std::vector<std::string> arguments = viewArguments(*state_.snapshot, state_.fixedSize.has_value());
+  if (state_.snapshot->program) {
+    note.script = editScript(*state_.snapshot);
+    const std::vector<std::string> display = displayScript(*state_.snapshot);
+    note.script.insert(note.script.end(), display.begin(), display.end());
+  }
+  arguments.insert(arguments.end(), options_.windowArguments.begin(), options_.windowArguments.end());
+  const uvec2 size = window_.windowedSize();
+  arguments.insert(arguments.end(), {"--window-size", fmt::format("{}x{}", size.x, size.y)});
+  keepSettings();
+  state_.addMessage({Message::Kind::error, restartProcess(arguments, note)});
 }
 
 void Application::requestDisplay() {
@@ -219,6 +318,7 @@ void Application::requestDisplay() {
   settings.channel = state_.controls.channel;
   settings.range = state_.controls.range;
   settings.compare = state_.controls.compare;
+  settings.marksNotFinite = state_.controls.marksNotFinite;
   if (snapshot.imageNumber == displayedImage_ && snapshot.session == displayedSession_ &&
       settings == displayedSettings_ && state_.reference == displayedReference_)
     return;
@@ -352,15 +452,21 @@ void Application::imageArea(const Area& area) {
   rayLines(state_, area);
   selectionOutline(state_, area);
   explainedPixel(state_, area);
+  notFinitePixels(state_, area);
   splitLine(state_, area);
   legend(state_, area);
   rayLegendBox(state_, area);
+  sizeNote(state_, area);
+  waitingNote(state_, area);
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   if (state_.snapshot->animated)
     animationBar(state_, {{0.0f, area.origin.y + area.size.y}, {area.size.x, animationBarHeight()}});
   const float left = area.origin.x + area.size.x;
-  if (left < display.x)
-    sidePanel({{left, area.origin.y}, {display.x - left, display.y - area.origin.y - statusBarHeight()}});
+  if (left < display.x) {
+    const Area panels{{left, area.origin.y}, {display.x - left, display.y - area.origin.y - statusBarHeight()}};
+    sidePanel(panels);
+    panelEdge(panels);
+  }
 }
 
 void Application::drawImage() {
@@ -376,22 +482,42 @@ void Application::drawImage() {
     list.AddImage(textureId(kReferenceTexture), {x, at.origin.y}, {end.x, end.y}, {split, 0.0f}, {1.0f, 1.0f});
 }
 
+// The left edge of the panels, which changes their width. A window of its own, because the contents of a window end before
+// its border.
+void Application::panelEdge(const Area& area) {
+  const float width = kEdgeWidth * state_.scale;
+  const vec2 origin{area.origin.x - 0.5f * width, area.origin.y};
+  ImGui::SetNextWindowPos({origin.x, origin.y});
+  ImGui::SetNextWindowSize({width, std::max(area.size.y, 1.0f)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
+  ImGui::Begin("edge of the panels", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::InvisibleButton("edge", {width, std::max(area.size.y, 1.0f)});
+  logControl("Edge of the panels");
+  const bool active = ImGui::IsItemActive();
+  if (ImGui::IsItemHovered() || active) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    const ImU32 color = ImGui::GetColorU32(active ? ImGuiCol_SeparatorActive : ImGuiCol_SeparatorHovered);
+    ImGui::GetWindowDrawList()->AddRectFilled({origin.x, origin.y}, {origin.x + width, origin.y + area.size.y}, color);
+  }
+  if (active) {
+    const float wanted = ImGui::GetIO().DisplaySize.x - ImGui::GetIO().MousePos.x;
+    state_.settings.panelWidth = std::clamp(wanted / state_.scale, kMinPanelWidth, kMaxPanelWidth);
+  }
+  if (ImGui::IsItemDeactivated()) storeSettings(state_);
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+}
+
 void Application::sidePanel(const Area& area) {
   ImGui::SetNextWindowPos({area.origin.x, area.origin.y});
   ImGui::SetNextWindowSize({area.size.x, std::max(area.size.y, 1.0f)});
   ImGui::Begin("panels", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-  // The left edge changes the width.
-  const ImVec2 cursor = ImGui::GetCursorPos();
-  ImGui::SetCursorPos({0.0f, ImGui::GetScrollY()});
-  ImGui::InvisibleButton("width", {4.0f * state_.scale, std::max(area.size.y, 1.0f)});
-  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  if (ImGui::IsItemActive()) {
-    const float width = ImGui::GetIO().DisplaySize.x - ImGui::GetIO().MousePos.x;
-    state_.settings.panelWidth = std::clamp(width / state_.scale, 200.0f, 1000.0f);
-  }
-  ImGui::SetCursorPos(cursor);
   struct Panel {
     const char* name;
     void (*draw)(ViewState&);
@@ -420,9 +546,9 @@ void Application::sidePanel(const Area& area) {
 
 void Application::menuBar() {
   const BindingSet& set = bindingSet(state_.settings.bindings);
-  const auto item = [&](const char* label, Action action, bool enabled = true) {
-    if (ImGui::MenuItem(label, keysOf(set, action).c_str(), false, enabled)) perform(action);
-    logControl(label);
+  const auto item = [&](const std::string& label, Action action, bool enabled = true) {
+    if (ImGui::MenuItem(label.c_str(), keysOf(set, action).c_str(), false, enabled)) perform(action);
+    logControl(label.c_str());
   };
   const auto menu = [](const char* label) {
     const bool open = ImGui::BeginMenu(label);
@@ -446,8 +572,8 @@ void Application::menuBar() {
     ImGui::EndMenu();
   }
   if (menu("Edit")) {
-    item("Undo", Action::undo, ready && state_.snapshot->canUndo);
-    item("Redo", Action::redo, ready && state_.snapshot->canRedo);
+    item(stepLabel("Undo", state_.snapshot->undoName), Action::undo, ready && state_.snapshot->canUndo);
+    item(stepLabel("Redo", state_.snapshot->redoName), Action::redo, ready && state_.snapshot->canRedo);
     ImGui::EndMenu();
   }
   if (menu("Camera")) {
@@ -465,6 +591,7 @@ void Application::menuBar() {
       perform(Action::toggleRays);
     logControl("Rays of the pixel");
     ImGui::MenuItem("Diagnostics", nullptr, &state_.showDiagnostics, !state_.snapshot->diagnostics.empty());
+    item("Fit the image to the window", Action::fitImage, ready && !state_.fixedSize);
     item("Full screen", Action::toggleFullScreen);
     item("Switch theme", Action::toggleTheme);
     if (ImGui::BeginMenu("Text size")) {
@@ -497,6 +624,8 @@ void Application::finishDialog() {
   if (!chosen) return;
   if (purpose == FileDialog::Purpose::open)
     openFile(state_, chosen->string());
+  else if (purpose == FileDialog::Purpose::reference)
+    useReference(state_, chosen->string());
   else if (purpose == FileDialog::Purpose::saveExplanation)
     saveExplanation(state_, *chosen);
   else
@@ -518,6 +647,7 @@ void Application::perform(Action action) {
     case Action::help: state_.showHelp = !state_.showHelp; return;
     case Action::quit: quit_ = true; return;
     case Action::togglePanels: state_.settings.panels = !state_.settings.panels; return;
+    case Action::fitImage: state_.fitsImage = true; return;
     case Action::toggleFullScreen: return window_.toggleFullScreen();
     case Action::toggleRays:
       if (state_.rays.paths) state_.rays.enabled = !state_.rays.enabled;
@@ -554,8 +684,14 @@ void Application::perform(Action action) {
     case Action::redo:
       forgetPendingValues();
       requestedExposures_.clear();
-      if (action == Action::undo && snapshot.canUndo) state_.apply(interactive::Undo{});
-      if (action == Action::redo && snapshot.canRedo) state_.apply(interactive::Redo{});
+      if (action == Action::undo && snapshot.canUndo) {
+        state_.apply(interactive::Undo{});
+        state_.addMessage({Message::Kind::note, fmt::format("undone: {}", snapshot.undoName)});
+      }
+      if (action == Action::redo && snapshot.canRedo) {
+        state_.apply(interactive::Redo{});
+        state_.addMessage({Message::Kind::note, fmt::format("redone: {}", snapshot.redoName)});
+      }
       break;
     case Action::save: dialog_.save(baseName(snapshot).string() + ".png"); break;
     case Action::copyCommand:
@@ -568,6 +704,7 @@ void Application::perform(Action action) {
     case Action::print:
       if (state_.hoveredPixel) state_.printPixels({state_.hoveredPixel->x, state_.hoveredPixel->y, 1, 1});
       break;
+    case Action::openReference: dialog_.openReference(); break;
     case Action::saveExplanation:
       if (state_.explanation)
         dialog_.saveExplanation(

@@ -24,6 +24,7 @@
 #include "navigator.h"
 #include "overlays/file_dialog.h"
 #include "overlays/overlays.h"
+#include "restart.h"
 #include "view_state.h"
 #include "viewer/display_thread.h"
 #include "window/window.h"
@@ -40,6 +41,8 @@ struct ApplicationOptions {
   bool storesSettings = true;                            // in the user's folder
   std::function<void(const std::string& json)> onEvent;  // lines of JSON; may be empty
   bool logsWidgets = false;                              // onEvent also gets the rectangles of all controls
+  std::optional<RestartNote> restarted;                  // what the process before this one has left
+  std::vector<std::string> windowArguments;              // options that a new process gets again
 };
 
 class Application {
@@ -67,11 +70,18 @@ class Application {
   void receive();         // what the threads have made since the last frame
   void setExplanation();  // that of the snapshot
   void chooseImageSize(const Area& area);
+  void openFirst();
+  double lostSeconds() const;
+  void keepSettings();
+  void handleBlockedWork();
+  void restart(const std::string& error, const std::vector<Diagnostic>& diagnostics);
+  bool closeTopmost(const InputEvent& event);
   void requestDisplay();
   void updateTextures();
   void buildInterface();
   Area layOut();  // of the image
   void menuBar();
+  void panelEdge(const Area& area);
   void sidePanel(const Area& area);
   void imageArea(const Area& area);
   void drawImage();
@@ -115,6 +125,8 @@ class Application {
   uvec2 imageSize_{0};                       // size of the session's image, or the size requested last
   uvec2 wantedSize_{0};                      // size that fits the window
   double wantedSince_ = 0;                   // on clock_
+  double imageTime_ = 0;                     // on clock_, of the last image of the session
+  bool cannotRestart_ = false;               // restart() has failed
   std::vector<double> requestedExposures_;   // by changeExposure(), which the session has not confirmed
   std::string displayError_;                 // of displays_, as the last message shows it
   bool quit_ = false;

@@ -23,6 +23,7 @@
 #include "cli/values.h"
 #include "cli/view_options.h"
 #include "gpu/instance.h"
+#include "restart.h"
 
 namespace quintet::cli {
 
@@ -37,7 +38,7 @@ namespace {
 // The file of --events, as lines that are written at once.
 class EventFile {
  public:
-  explicit EventFile(const std::string& name) : file_(name, std::ios::trunc) {
+  EventFile(const std::string& name, bool appends) : file_(name, appends ? std::ios::app : std::ios::trunc) {
     if (!file_) throw FileError(name, "cannot write the file");
   }
   void write(const std::string& json) {
@@ -50,8 +51,26 @@ class EventFile {
   std::ofstream file_;
 };
 
+// The options that a process gets again if the window must be opened again, besides those of the scene (viewArguments()).
+std::vector<std::string> windowArguments(const cli::ViewOptions& options) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) arguments.insert(arguments.end(), {name, value});
+  };
+  add("--device", options.device);
+  add("--present-device", options.presentDevice);
+  add("--scale", options.scaleText);
+  add("--theme", options.theme);
+  add("--events", options.events);
+  if (options.request.launchTimeout > 0) add("--timeout", fmt::format("{}", options.request.launchTimeout));
+  if (options.noSettings) arguments.emplace_back("--no-settings");
+  return arguments;
+}
+
 int show(const cli::ViewOptions& options) {
   ApplicationOptions application;
+  application.restarted = takeRestartNote();
+  application.windowArguments = windowArguments(options);
   application.engine.device = options.device;
   application.engine.log = [](LogLevel level, const std::string& text) {
     if (level == LogLevel::warning) cli::printMessage("quintet: warning: " + text);
@@ -65,7 +84,7 @@ int show(const cli::ViewOptions& options) {
     application.session = job::interactive::SessionRequest{.program = options.program, .render = options.request};
   std::optional<EventFile> events;
   if (!options.events.empty()) {
-    events.emplace(options.events);
+    events.emplace(options.events, application.restarted.has_value());
     application.onEvent = [&events](const std::string& json) { events->write(json); };
     application.logsWidgets = true;
   }

@@ -11,10 +11,9 @@
 
 #include "base/text.h"
 #include "cli/values.h"
-#include "job/interactive/light_properties.h"
-#include "job/interactive/material_properties.h"
 #include "render/tone_map/tone_map.h"
 #include "scene/load.h"
+#include "viewer/edit_script.h"
 
 namespace quintet::viewer {
 namespace {
@@ -85,66 +84,6 @@ std::vector<std::string> displayOptions(const interactive::SessionState& state) 
   return options;
 }
 
-ordered_json numbersJson(const std::vector<double>& numbers) {
-  if (numbers.size() == 1) return numbers.front();
-  return numbers;
-}
-
-// ---- Lines of a script (docs/viewer.md)
-
-void addMaterialLines(std::vector<std::string>& lines, const Snapshot& snapshot) {
-  for (const auto& [index, edited] : snapshot.state.materials) {
-    ordered_json line{{"do", "material"}, {"name", snapshot.scene->materialNames[index]}};
-    const std::size_t before = line.size();
-    for (const std::string& property : interactive::materialProperties()) {
-      const std::vector<double> value = interactive::materialPropertyValue(*edited, property);
-      if (value != interactive::materialPropertyValue(snapshot.scene->materials[index], property))
-        line[property] = numbersJson(value);
-    }
-    if (line.size() > before) lines.push_back(line.dump());
-  }
-}
-
-void addLightLines(std::vector<std::string>& lines, const Snapshot& snapshot) {
-  const auto list = [](const vec3& v) { return std::vector<double>{v.x, v.y, v.z}; };
-  for (const auto& [index, edited] : snapshot.state.lights) {
-    const scene::Light& light = edited->light;
-    ordered_json line{{"do", "light"}, {"name", snapshot.scene->lightNames[index]}, {"on", edited->on}};
-    for (const std::string& property : interactive::lightProperties(light.type)) {
-      if (property == "intensity") line[property] = interactive::lightIntensity(light);
-      if (property == "color") line[property] = list(interactive::lightColor(light));
-      if (property == "position") line[property] = list(light.position);
-      if (property == "direction") line[property] = list(light.direction);
-      if (property == "innerConeAngle") line[property] = glm::degrees(light.innerConeAngle);
-      if (property == "outerConeAngle") line[property] = glm::degrees(light.outerConeAngle);
-    }
-    lines.push_back(line.dump());
-  }
-}
-
-void addTransformLines(std::vector<std::string>& lines, const Snapshot& snapshot) {
-  for (const auto& [index, transform] : snapshot.state.transforms) {
-    std::vector<double> rows;
-    for (glm::length_t row = 0; row < 3; ++row)
-      for (glm::length_t column = 0; column < 4; ++column) rows.push_back(transform[column][row]);
-    lines.push_back(
-        ordered_json{{"do", "transform"}, {"instance", snapshot.scene->instances[index].name}, {"matrix", rows}}
-            .dump());
-  }
-}
-
-// Everything that `render` and `run` have no option for.
-std::vector<std::string> scriptLines(const Snapshot& snapshot) {
-  std::vector<std::string> lines;
-  addMaterialLines(lines, snapshot);
-  addLightLines(lines, snapshot);
-  addTransformLines(lines, snapshot);
-  const float frame = snapshot.state.frame;
-  if (frame != std::floor(frame) || (frame != 0.0f && !lines.empty()))
-    lines.push_back(ordered_json{{"do", "time"}, {"frame", frame}}.dump());
-  return lines;
-}
-
 void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
   list.insert(list.end(), more.begin(), more.end());
 }
@@ -163,12 +102,7 @@ std::string sessionCommand(const Snapshot& snapshot, const std::vector<std::stri
 }
 
 std::string scriptCommand(const Snapshot& snapshot, std::vector<std::string> lines) {
-  const interactive::SessionState& state = snapshot.state;
-  if (state.output != snapshot.program->outputs.front().name)
-    lines.push_back(ordered_json{{"do", "output"}, {"name", state.output}}.dump());
-  if (state.exposure != 0.0) lines.push_back(ordered_json{{"do", "exposure"}, {"stops", state.exposure}}.dump());
-  const std::vector<std::string> display = displayOptions(state);
-  if (state.toneMap) lines.push_back(ordered_json{{"do", "tonemap"}, {"name", display.back()}}.dump());
+  append(lines, displayScript(snapshot));
   lines.push_back(R"({"do":"save","file":"image.png"})");
   return sessionCommand(snapshot, lines);
 }
@@ -176,7 +110,7 @@ std::string scriptCommand(const Snapshot& snapshot, std::vector<std::string> lin
 }  // namespace
 
 std::string reproducingCommand(const Snapshot& snapshot) {
-  if (const std::vector<std::string> lines = scriptLines(snapshot); !lines.empty())
+  if (const std::vector<std::string> lines = editScript(snapshot); !lines.empty())
     return scriptCommand(snapshot, lines);
   const interactive::SessionState& state = snapshot.state;
   const std::string scene = snapshot.request->render.scene.string();
@@ -198,8 +132,30 @@ std::string reproducingCommand(const Snapshot& snapshot) {
   return cli::commandLine(renders ? "render" : "run", arguments);
 }
 
+std::vector<std::string> viewArguments(const Snapshot& snapshot, bool fixedSize) {
+  Snapshot shown = snapshot;
+  if (!shown.program) {  // the state is that of the request
+    const interactive::SessionRequest& request = *snapshot.request;
+    shown.state.program = request.program;
+    shown.state.parameterFile = request.render.parameterFile;
+    shown.state.assignments = request.render.assignments;
+    shown.state.camera = request.render.camera;
+    shown.state.environment = request.render.environment;
+    shown.state.size = request.render.size;
+    if (request.render.limits.samples) shown.state.samples = static_cast<std::uint32_t>(*request.render.limits.samples);
+  }
+  std::vector<std::string> arguments;
+  const std::string scene = snapshot.request->render.scene.string();
+  if (!scene.empty()) arguments.push_back(scene);
+  append(arguments, {"--program", shown.state.program});
+  std::vector<std::string> options = commonOptions(shown);
+  if (!fixedSize) options.erase(options.begin(), options.begin() + 2);  // --size, which is the first one
+  append(arguments, options);
+  return arguments;
+}
+
 std::string explainingCommand(const Snapshot& snapshot, uvec2 pixel, std::uint32_t sample) {
-  if (std::vector<std::string> lines = scriptLines(snapshot); !lines.empty()) {
+  if (std::vector<std::string> lines = editScript(snapshot); !lines.empty()) {
     lines.push_back(
         ordered_json{{"do", "explain"}, {"x", pixel.x}, {"y", pixel.y}, {"sample", sample}, {"file", "pixel.json"}}
             .dump());

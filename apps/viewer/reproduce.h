@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "viewer/session_thread.h"
 
@@ -12,6 +13,9 @@ namespace quintet::viewer {
 
 // For a snapshot with Phase::ready. Edits of materials, lights and objects become a script for 'quintet view'.
 std::string reproducingCommand(const Snapshot& snapshot);
+// The arguments of 'quintet view' that open the scene again, without editScript(). Also for a session that has not been
+// opened. `fixedSize`: the image keeps its size.
+std::vector<std::string> viewArguments(const Snapshot& snapshot, bool fixedSize);
 // `sample`: or frame. A script writes the explanation to pixel.json.
 std::string explainingCommand(const Snapshot& snapshot, uvec2 pixel, std::uint32_t sample);
 

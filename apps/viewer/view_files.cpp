@@ -49,14 +49,14 @@ void openSession(ViewState& state, job::interactive::SessionRequest request, con
   startSession(state, std::move(request));
 }
 
-void useReference(ViewState& state, const std::string& path) {
+// A render rather than an environment.
+bool hasSizeOfImage(const ViewState& state, const std::string& path) {
+  if (!state.ready()) return false;
   try {
-    MemoryBudget budget(path, state.snapshot->request ? state.snapshot->request->render.load.maxMemory : 0);
-    state.reference = std::make_shared<const io::Image>(io::readImage(path, budget));
-    state.referenceFile = std::filesystem::path(path).filename().string();
-    if (state.controls.compare == CompareMode::off) state.controls.compare = CompareMode::split;
-  } catch (const Error& error) {
-    state.addMessage({Message::Kind::error, error.what()});
+    const io::ImageInfo info = io::probeImage(readFile(path), path);
+    return uvec2(info.width, info.height) == state.snapshot->state.size;
+  } catch (const Error&) {
+    return false;  // reported when the file is used
   }
 }
 
@@ -146,6 +146,15 @@ void openFile(ViewState& state, const std::string& path) {
       return openSession(state, std::move(request), path);
     }
     case FileUse::environment:
+      if (hasSizeOfImage(state, path)) {
+        useReference(state, path);
+        if (state.reference)
+          state.addMessage({Message::Kind::note,
+                            fmt::format("{} has the size of the image, so it is compared with the image; to use it as "
+                                        "the environment, type its name in Environment",
+                                        path)});
+        return;
+      }
       if (state.ready())
         state.apply(job::interactive::SetEnvironment{.source = absolutePath(path)});
       else
@@ -159,6 +168,18 @@ void openFile(ViewState& state, const std::string& path) {
            fmt::format("{}: neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with "
                        "program.toml), an image nor an explanation (.json)",
                        path)});
+  }
+}
+
+void useReference(ViewState& state, const std::string& path) {
+  try {
+    MemoryBudget budget(path, state.snapshot->request ? state.snapshot->request->render.load.maxMemory : 0);
+    state.reference = std::make_shared<const io::Image>(io::readImage(path, budget));
+    state.referenceFile = std::filesystem::path(path).filename().string();
+    state.settings.openPanels.insert("Compare");
+    if (state.controls.compare == CompareMode::off) state.controls.compare = CompareMode::split;
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::error, error.what()});
   }
 }
 

@@ -18,6 +18,8 @@ std::string sceneKey(const Snapshot& snapshot);
 // which can be undone. An environment, a reference image or an explanation is used for the current scene. Other files
 // cause a message.
 void openFile(ViewState& state, const std::string& path);
+// The image to compare with: a file of any format.
+void useReference(ViewState& state, const std::string& path);
 // One of Settings::recentFiles. If it no longer exists, this is a message, and the session continues.
 void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.

@@ -60,6 +60,7 @@ struct DisplayControls {
   FalseColorRange range;
   CompareMode compare = CompareMode::off;
   float split = 0.5f;  // position of the line, as a fraction of the width
+  bool marksNotFinite = true;
 };
 
 // What the next click on the image does.
@@ -112,6 +113,12 @@ struct ViewState {
   overlay::ImagePlacement placement;  // of the image, in the current frame
   uvec2 viewSize{0};                  // for which the window has room
   std::optional<uvec2> fixedSize;     // of the image; unset: that of the window
+  bool keptSize = false;              // the image is scaled, because another size would discard samples that took long
+  bool fitsImage = false;             // the user wants the size of the window now
+  // On `time`: since then, there is no image, or work before the next one. Unset while the session renders.
+  std::optional<double> waitingSince;
+  std::optional<double> loadingSince;  // on `time`; unset unless the session is being opened
+  bool stopsWork = false;              // the user ends a launch that takes too long
 
   bool ready() const { return snapshot->phase == Snapshot::Phase::ready; }
   void apply(job::interactive::Command command) { session->apply(std::move(command)); }

@@ -32,6 +32,7 @@ std::vector<KeyBinding> commonKeys() {
       {"+", kNone, Action::moreExposure},
       {"=", kNone, Action::moreExposure},
       {"X", kNone, Action::compare},
+      {"X", kShift, Action::openReference},
       {"I", kNone, Action::explain},
       {"P", kNone, Action::print},
       {"E", kControl, Action::saveExplanation},
@@ -39,6 +40,7 @@ std::vector<KeyBinding> commonKeys() {
       {"V", kNone, Action::toggleRays},
       {"Tab", kNone, Action::togglePanels},
       {"N", kNone, Action::togglePanels},
+      {"0", kNone, Action::fitImage},
       {"F11", kNone, Action::toggleFullScreen},
       {"L", kNone, Action::toggleTheme},
       {"?", kNone, Action::help},
@@ -163,6 +165,7 @@ std::string_view description(Action action) {
     case Action::nextOutput: return "Show the next output";
     case Action::lessExposure: return "Reduce the exposure by a third of a stop";
     case Action::moreExposure: return "Increase the exposure by a third of a stop";
+    case Action::openReference: return "Choose an image to compare with";
     case Action::compare: return "Compare with the reference image";
     case Action::explain: return "Explain the pixel at the pointer";
     case Action::print: return "Show what the program prints for the pixel at the pointer";
@@ -170,6 +173,7 @@ std::string_view description(Action action) {
     case Action::copyExplainCommand: return "Copy the command that explains this pixel";
     case Action::toggleRays: return "Show or hide the rays of the explained pixel";
     case Action::togglePanels: return "Show or hide the panels";
+    case Action::fitImage: return "Render at the size of the window";
     case Action::toggleFullScreen: return "Use the full screen";
     case Action::toggleTheme: return "Switch between the dark and the light theme";
     case Action::help: return "Show this help";

@@ -49,6 +49,30 @@ DisplayPixels toneMapped(const io::Image& image, const DisplaySettings& settings
   return pixelsOf(render::toDisplay(image, settings.toneMap, static_cast<float>(settings.exposure), false));
 }
 
+bool isFinitePixel(const float* rgba) {
+  return std::isfinite(rgba[0]) && std::isfinite(rgba[1]) && std::isfinite(rgba[2]);
+}
+
+std::vector<uvec2> findNotFinite(const io::Image& image) {
+  std::vector<uvec2> found;
+  const float* samples = image.samples<float>().data();
+  for (std::size_t i = 0; i < image.pixelCount() && found.size() < kMaxNotFinite; ++i)
+    if (!isFinitePixel(samples + 4 * i)) found.push_back({i % image.width, i / image.width});
+  return found;
+}
+
+// Magenta, as the false color of NaN.
+DisplayPixels marked(const DisplayPixels& pixels, const io::Image& image) {
+  auto bytes = std::make_shared<std::vector<std::byte>>(*pixels.bytes);
+  const float* samples = image.samples<float>().data();
+  for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+    if (isFinitePixel(samples + 4 * i)) continue;
+    for (const std::size_t c : {0, 2, 3}) (*bytes)[4 * i + c] = std::byte{255};
+    (*bytes)[4 * i + 1] = std::byte{0};
+  }
+  return {pixels.size, std::move(bytes)};
+}
+
 struct FittedReference {
   io::Image image;      // linear premultiplied RGBA floats, of the size of the rendered image
   double coverage = 1;  // share of the pixels that the reference covers, (0,1]
@@ -124,13 +148,16 @@ std::string_view channelName(Channel channel) {
 bool DisplaySettings::operator==(const DisplaySettings& other) const {
   return exposure == other.exposure && toneMap == other.toneMap && heat == other.heat &&
          falseColor == other.falseColor && channel == other.channel && range.least == other.range.least &&
-         range.most == other.range.most && range.logarithmic == other.range.logarithmic && compare == other.compare;
+         range.most == other.range.most && range.logarithmic == other.range.logarithmic && compare == other.compare &&
+         marksNotFinite == other.marksNotFinite;
 }
 
 Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings) {
   Display result;
   result.histogram = makeHistogram(image);
+  if (result.histogram.notFinitePixels > 0) result.notFinite = findNotFinite(image);
   const CompareMode compare = reference ? settings.compare : CompareMode::off;
+  if (compare != CompareMode::off) result.referenceSize = {reference->width, reference->height};
   const bool showsHeat = settings.heat && !settings.falseColor && compare <= CompareMode::split;
   const render::FalseColorScale scale =
       showsHeat ? render::falseColorScale(image, static_cast<float>(settings.exposure)) : render::FalseColorScale{};
@@ -142,12 +169,14 @@ Display makeDisplay(const io::Image& image, const io::Image* reference, const Di
       return settings.range.position(valueOf(rgba, settings.channel));
     });
   };
-  if (compare == CompareMode::off) {
+  if (compare <= CompareMode::split) {
     result.image = shown(image);
-    return result;
+    const bool hasSceneColors = !showsHeat && !settings.falseColor;  // else NaN has a color of its own
+    if (settings.marksNotFinite && hasSceneColors && !result.notFinite.empty())
+      result.image = marked(result.image, image);
   }
+  if (compare == CompareMode::off) return result;
   if (compare == CompareMode::split) {
-    result.image = shown(image);
     result.reference = shown(fitted(*reference, image, nullptr).image);
     return result;
   }

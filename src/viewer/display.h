@@ -37,8 +37,11 @@ struct DisplaySettings {
   Channel channel = Channel::luminance;
   FalseColorRange range;
   CompareMode compare = CompareMode::off;
+  bool marksNotFinite = true;  // magenta instead of the color of a pixel that is not finite
   bool operator==(const DisplaySettings& other) const;
 };
+
+inline constexpr std::size_t kMaxNotFinite = 256;
 
 // RGBA bytes, rows from the top.
 struct DisplayPixels {
@@ -50,7 +53,9 @@ struct Display {
   DisplayPixels image;
   DisplayPixels reference;                   // with CompareMode::split, of the same size
   Histogram histogram;                       // of the linear image
+  std::vector<uvec2> notFinite;              // pixels, row by row; at most kMaxNotFinite
   std::optional<FalseColorRange> heatRange;  // of the colors, with DisplaySettings::heat
+  uvec2 referenceSize{0};                    // before it was scaled; with a reference that is compared
   std::optional<double> error;               // mean of the difference or of FLIP; with CompareMode::difference and flip
 };
 

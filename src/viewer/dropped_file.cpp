@@ -27,7 +27,7 @@ FileUse useOfFile(const std::filesystem::path& path) {
   if (name == "program.toml" || ends(".rt.glsl")) return FileUse::program;
   if (ends(".gltf", ".glb", ".scene.toml")) return FileUse::scene;
   if (ends(".hdr", ".exr")) return FileUse::environment;
-  if (ends(".png", ".jpg", ".jpeg", ".webp")) return FileUse::reference;
+  if (ends(".png", ".jpg", ".jpeg", ".webp", ".ktx2")) return FileUse::reference;
   if (ends(".json")) return FileUse::explanation;
   return FileUse::unknown;
 }

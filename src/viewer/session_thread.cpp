@@ -11,10 +11,13 @@
 
 #include "base/error.h"
 #include "gpu/error.h"
+#include "job/interactive/command_json.h"
 #include "job/interactive/event_json.h"
+#include "job/result.h"
 #include "output/plan.h"
 #include "output/write.h"
 #include "overlay/ray_overlay.h"
+#include "viewer/edit_script.h"
 
 namespace quintet::viewer {
 namespace {
@@ -26,6 +29,7 @@ constexpr double kIdleSeconds = 0.1;    // between checks for saved files of the
 constexpr double kMovingSeconds = 0.3;  // after a command, images of reduced resolution are not interrupted
 constexpr double kRateSeconds = 0.25;   // between measurements of the rate of rays, which wait for the device
 
+constexpr double kBlockedSeconds = 5.0;     // without a sign of life, after which a save is not noticed
 constexpr double kFastDepthSeconds = 0.02;  // depths that are found in this time follow a moving camera
 
 // The request keeps the samples, so it does not interrupt a batch.
@@ -65,7 +69,7 @@ class SessionThread::Host : public job::Observer {
  public:
   explicit Host(SessionThread& thread) : thread_(thread) {}
   void stage(const std::string& text) override {
-    if (thread_.next_.phase != Snapshot::Phase::loading) return;
+    thread_.showsLife();
     thread_.next_.stage = text;
     thread_.publish();
   }
@@ -111,13 +115,31 @@ void SessionThread::post(Request request) {
   changed_.notify_one();
 }
 
-void SessionThread::open(interactive::SessionRequest request) { post(std::move(request)); }
+void SessionThread::open(interactive::SessionRequest request, std::vector<std::string> script) {
+  post(OpenRequest{std::move(request), std::move(script)});
+}
+void SessionThread::openAfterSave(interactive::SessionRequest request, std::vector<std::string> script,
+                                  std::string error, std::vector<Diagnostic> diagnostics) {
+  post(WaitForSaveRequest{{std::move(request), std::move(script)}, std::move(error), std::move(diagnostics)});
+}
+void SessionThread::retry() { post(RetryRequest{}); }
 void SessionThread::apply(interactive::Command command) { post(std::move(command)); }
 void SessionThread::pick(uvec2 pixel, PickUse use) { post(PickRequest{pixel, use}); }
 void SessionThread::save(const std::filesystem::path& file) { post(SaveRequest{file}); }
 void SessionThread::showDepth(bool shown) { post(DepthRequest{shown}); }
 
 void SessionThread::explain(uvec2 pixel, std::uint32_t sample) { post(ExplainRequest{pixel, sample}); }
+
+double SessionThread::blockedSeconds() const { return working_ ? clock_.seconds() - lastSign_ : 0.0; }
+
+bool SessionThread::savedWhileBlocked() {
+  const std::lock_guard lock(savesMutex_);
+  if (savesWatcher_ && savesWatcher_->pending()) {
+    savesWatcher_->wait(0);
+    lastSave_ = clock_.seconds();
+  }
+  return lastSave_ > lastSign_ && blockedSeconds() > kBlockedSeconds;
+}
 
 std::shared_ptr<const Snapshot> SessionThread::snapshot() const {
   const std::lock_guard lock(mutex_);
@@ -155,6 +177,8 @@ void SessionThread::publish() {
 
 void SessionThread::run() {
   while (waitForWork()) {
+    showsLife();
+    working_ = true;
     for (Request& request : takeRequests()) {
       if (stop_) break;
       guarded([&] { handle(request); });
@@ -165,6 +189,11 @@ void SessionThread::run() {
       guarded([&] { handle(request); });
     }
     if (session_ && !stop_) guarded([&] { step(); });
+    if (session_ && !next_.stage.empty()) {
+      next_.stage.clear();
+      publish();
+    }
+    working_ = false;
   }
   closeSession();
 }
@@ -187,7 +216,7 @@ std::vector<SessionThread::Request> SessionThread::takeRequests() {
 
 void SessionThread::handle(Request& request) {
   const auto* command = std::get_if<interactive::Command>(&request);
-  const bool opens = std::holds_alternative<interactive::SessionRequest>(request) ||
+  const bool opens = std::holds_alternative<OpenRequest>(request) ||
                      (command && std::holds_alternative<interactive::SetProgram>(*command));
   if (!opens) return dispatch(request);
   retry_.reset();
@@ -207,9 +236,9 @@ void SessionThread::handle(Request& request) {
 }
 
 void SessionThread::retryAfterSave(const Request& request, const std::vector<Diagnostic>& diagnostics) {
-  const auto* open = std::get_if<interactive::SessionRequest>(&request);
+  const auto* open = std::get_if<OpenRequest>(&request);
   job::WatchList files;
-  files.addProgram(open ? open->program
+  files.addProgram(open ? open->session.program
                         : std::get<interactive::SetProgram>(std::get<interactive::Command>(request)).name);
   files.addDiagnosed(diagnostics);
   if (files.files.empty() && files.folders.empty()) return;
@@ -225,8 +254,12 @@ void SessionThread::dispatch(Request& request) {
   std::visit(
       [&](auto& value) {
         using T = std::decay_t<decltype(value)>;
-        if constexpr (std::is_same_v<T, interactive::SessionRequest>)
+        if constexpr (std::is_same_v<T, OpenRequest>)
           openSession(std::move(value));
+        else if constexpr (std::is_same_v<T, WaitForSaveRequest>)
+          waitForSave(value);
+        else if constexpr (std::is_same_v<T, RetryRequest>)
+          retryNow();
         else if constexpr (std::is_same_v<T, interactive::Command>)
           applyCommand(value);
         else if constexpr (std::is_same_v<T, PickRequest>)
@@ -251,6 +284,9 @@ void SessionThread::guarded(const std::function<void()>& function) {
     addMessage(Message::Kind::error, error.what());
     publish();
   } catch (const TimeoutError& error) {
+    const Request again = reopening();
+    next_.hung = true;
+    retryAfterSave(again, next_.diagnostics);
     fail(error.what());
   } catch (const DeviceLostError& error) {
     if (!session_) {
@@ -278,7 +314,9 @@ void SessionThread::fail(const std::string& error) {
   closeSession();
   saves_.clear();
   next_.phase = Snapshot::Phase::failed;
+  next_.stage.clear();
   next_.error = error;
+  next_.reopensAfterSave = retry_.has_value();
   next_.image = nullptr;
   publish();
 }
@@ -293,11 +331,13 @@ void SessionThread::closeSession() {
   session_.reset();
 }
 
-void SessionThread::openSession(interactive::SessionRequest request) {
+void SessionThread::openSession(OpenRequest opened) {
+  interactive::SessionRequest& request = opened.session;
   closeSession();
   saves_.clear();
   next_ = Snapshot{};
   depthFailed_ = false;
+  resultWarnings_.clear();
   next_.session = ++sessions_;
   next_.phase = Snapshot::Phase::loading;
   next_.stage = "opening the device";
@@ -313,6 +353,54 @@ void SessionThread::openSession(interactive::SessionRequest request) {
   next_.diagnostics = session_->diagnostics();
   lastImage_ = clock_.seconds();
   publishState();
+  runScript(opened.script);
+}
+
+void SessionThread::runScript(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines)
+    guarded([&] {
+      interactive::JsonFields fields(line);
+      const std::string name = fields.text("do");
+      applyCommand(interactive::parseCommand(name, fields));
+    });
+}
+
+void SessionThread::waitForSave(const WaitForSaveRequest& request) {
+  closeSession();
+  next_ = Snapshot{};
+  next_.session = ++sessions_;
+  next_.request = std::make_shared<const interactive::SessionRequest>(request.open.session);
+  next_.diagnostics = request.diagnostics;
+  retryAfterSave(request.open, request.diagnostics);
+  fail(request.error);
+}
+
+void SessionThread::retryNow() {
+  if (session_) return;
+  Request again = retry_ ? *retry_ : Request(OpenRequest{*next_.request, {}});
+  handle(again);
+}
+
+// Opens the scene with all changes of the user, as far as they are known.
+SessionThread::OpenRequest SessionThread::reopening() const {
+  if (!next_.program) return {*next_.request, {}};
+  OpenRequest result{interactive::withState(*next_.request, next_.state), editScript(next_)};
+  const std::vector<std::string> display = displayScript(next_);
+  result.script.insert(result.script.end(), display.begin(), display.end());
+  return result;
+}
+
+// For savedWhileBlocked().
+void SessionThread::watchSaves() {
+  const job::WatchList& files = session_->watchedFiles();
+  const std::lock_guard lock(savesMutex_);
+  try {
+    if (!savesWatcher_) savesWatcher_.emplace();
+    const job::WatchList& last = savesWatcher_->watched();
+    if (last.files != files.files || last.folders != files.folders) savesWatcher_->watch(files);
+  } catch (const Error&) {  // the system's limit of watches
+    savesWatcher_.reset();
+  }
 }
 
 void SessionThread::applyCommand(const interactive::Command& command) {
@@ -332,6 +420,7 @@ void SessionThread::publishState(bool reloaded) {
     next_.outdatedProgram = false;
     next_.explanationUsesCamera = false;
   }
+  watchSaves();
   next_.explanationOutdated = next_.explanation && session_->restarts() != explainedRestarts_;
   next_.callsPrint = session_->callsPrint();
   next_.print = session_->print();
@@ -339,6 +428,8 @@ void SessionThread::publishState(bool reloaded) {
   next_.parameters = std::make_shared<const program::ParameterValues>(session_->parameters());
   next_.canUndo = session_->canUndo();
   next_.canRedo = session_->canRedo();
+  next_.undoName = session_->undoName();
+  next_.redoName = session_->redoName();
   next_.camera = session_->camera();
   next_.navigation.reset();
   if (!next_.camera.orthographic) next_.navigation = session_->navigation();
@@ -380,7 +471,10 @@ void SessionThread::explainPixel(const ExplainRequest& request) {
 void SessionThread::step() {
   // While something moves, each image is shown. Afterwards a batch can take long, and commands interrupt it.
   const bool moving = clock_.seconds() - lastCommand_ < kMovingSeconds;
-  const auto interrupted = [&] { return stop_ || (!moving && urgent_); };
+  const auto interrupted = [&] {
+    showsLife();
+    return stop_ || (!moving && urgent_);
+  };
   const std::vector<interactive::Event> events = session_->step(kStepSeconds, interrupted);
   if (!events.empty()) report(events);
   if (!saves_.empty()) writeSaves();
@@ -409,6 +503,8 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
     if (options_.onEvent) options_.onEvent(interactive::eventJson(event));
     if (std::holds_alternative<interactive::Restarted>(event)) {
       next_.renderError.clear();
+      next_.droppedSamples = 0;
+      next_.droppedPixels.clear();
       next_.printed = nullptr;
       next_.depth = nullptr;
       depthFailed_ = false;
@@ -441,6 +537,7 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
     const double now = clock_.seconds();
     next_.secondsPerImage = now - std::exchange(lastImage_, now);
     measureRays();
+    if (next_.progress.complete) warnAboutResult();
     for (const program::Output& output : session_->program().outputs)
       if (output.name == session_->state().output) next_.outputKind = output.kind;
   }
@@ -457,9 +554,22 @@ void SessionThread::addPrinted(const job::Printed& printed) {
 
 void SessionThread::measureRays() {
   const double now = clock_.seconds();
-  if (now - lastRates_ < kRateSeconds || !(next_.progress.seconds > 0)) return;
+  if ((now - lastRates_ < kRateSeconds && !next_.progress.complete) || !(next_.progress.seconds > 0)) return;
   lastRates_ = now;
-  next_.raysPerSecond = static_cast<double>(session_->rays().rays) / next_.progress.seconds;
+  const render::RayCount count = session_->rays();
+  next_.raysPerSecond = static_cast<double>(count.rays) / next_.progress.seconds;
+  next_.droppedSamples = count.droppedSamples;
+  next_.droppedPixels.clear();
+  if (count.droppedSamples > 0) next_.droppedPixels = session_->droppedPixels(kMaxMarkedPixels);
+}
+
+// What `render` reports at its end, unless the last complete image had it, too.
+void SessionThread::warnAboutResult() {
+  const std::vector<std::string> warnings = job::resultWarnings(session_->result());
+  for (const std::string& warning : warnings)
+    if (std::ranges::find(resultWarnings_, warning) == resultWarnings_.end())
+      addMessage(Message::Kind::warning, warning);
+  resultWarnings_ = warnings;
 }
 
 // A save waits until the film has its full size, unless the render has failed.

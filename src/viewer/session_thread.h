@@ -28,6 +28,8 @@
 
 namespace quintet::viewer {
 
+inline constexpr std::size_t kMaxMarkedPixels = 256;
+
 struct Message {
   enum class Kind { note, warning, error };
   Kind kind = Kind::note;
@@ -43,7 +45,10 @@ struct Snapshot {
     failed,  // `error` says why; open() starts over
   };
   Phase phase = Phase::empty;
-  std::string stage, error;
+  std::string stage;  // with Phase::ready: of work before the next image; empty if it only renders
+  std::string error;
+  bool reopensAfterSave = false;  // with Phase::failed: as soon as a file of the program is saved
+  bool hung = false;  // with Phase::failed: a launch did not end, and threads of the driver can still work on it
 
   // With Phase::ready.
   std::uint64_t session = 0;  // number of open() calls
@@ -56,6 +61,7 @@ struct Snapshot {
   scene::Camera camera;
   std::optional<job::interactive::OrbitCamera> navigation;  // unset for an orthographic camera
   bool canUndo = false, canRedo = false;
+  std::string undoName, redoName;       // interactive::undoName() of the step
   bool animated = false;                // SetFrame has an effect
   bool countsFrames = false;            // `progress` and the limit of samples count frames
   std::vector<Diagnostic> diagnostics;  // of the program, or of its last version that did not compile
@@ -66,8 +72,12 @@ struct Snapshot {
   program::OutputKind outputKind = program::OutputKind::color;
   job::interactive::ImageUpdated progress;  // of the image
   double raysPerSecond = 0;                 // 0 if unknown
-  double secondsPerImage = 0;               // between the last two images
-  std::string renderError;                  // of the last Failed event, until the session restarts; else empty
+  // Samples that the program has discarded because they were not finite, and pixels with such a sample, at most
+  // kMaxMarkedPixels. From time to time, and of the complete image.
+  std::uint64_t droppedSamples = 0;
+  std::vector<uvec2> droppedPixels;
+  double secondsPerImage = 0;  // between the last two images
+  std::string renderError;     // of the last Failed event, until the session restarts; else empty
 
   // Of the last explain(); null before the first one, and if the last one failed.
   std::shared_ptr<const job::PixelExplanation> explanation;
@@ -104,15 +114,25 @@ class SessionThread {
   SessionThread& operator=(const SessionThread&) = delete;
 
   // Each of these returns at once. Errors become messages.
-  // Replaces the session. If its program has errors, it tries again after each save of the program's files. The same
-  // holds for the command SetProgram, until a different command edits the session.
-  void open(job::interactive::SessionRequest request);
+  // Replaces the session. If its program has errors or hangs, it tries again after each save of the program's files. The
+  // same holds for the command SetProgram, until a different command edits the session. `script`: lines with commands
+  // (docs/viewer.md) that follow; those that fail become messages.
+  void open(job::interactive::SessionRequest request, std::vector<std::string> script = {});
+  // Phase::failed with this error, as if open() had failed: the next save of a file of the program opens it.
+  void openAfterSave(job::interactive::SessionRequest request, std::vector<std::string> script, std::string error,
+                     std::vector<Diagnostic> diagnostics);
+  void retry();                                   // after Phase::failed: opens the same again
   void apply(job::interactive::Command command);  // without a session it has no effect
   void pick(uvec2 pixel, PickUse use);
   void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
   // Snapshot::explanation becomes that of this sample. A later call replaces those that wait.
   void explain(uvec2 pixel, std::uint32_t sample);
   void showDepth(bool shown);  // Snapshot::depth
+
+  // Since the last sign of life of the work in progress, which is between two launches; 0 while nothing is done.
+  double blockedSeconds() const;
+  // A file of the program was saved, but the work does not notice it, because a launch does not end.
+  bool savedWhileBlocked();
 
   std::shared_ptr<const Snapshot> snapshot() const;
   std::vector<Message> takeMessages();
@@ -134,8 +154,18 @@ class SessionThread {
   struct DepthRequest {
     bool shown = false;
   };
-  using Request = std::variant<job::interactive::SessionRequest, job::interactive::Command, PickRequest, SaveRequest,
-                               ExplainRequest, DepthRequest>;
+  struct OpenRequest {
+    job::interactive::SessionRequest session;
+    std::vector<std::string> script;
+  };
+  struct WaitForSaveRequest {
+    OpenRequest open;
+    std::string error;
+    std::vector<Diagnostic> diagnostics;
+  };
+  struct RetryRequest {};
+  using Request = std::variant<OpenRequest, job::interactive::Command, PickRequest, SaveRequest, ExplainRequest,
+                               DepthRequest, WaitForSaveRequest, RetryRequest>;
   class Host;
 
   void run();
@@ -145,7 +175,13 @@ class SessionThread {
   void handle(Request& request);
   void dispatch(Request& request);
   void retryAfterSave(const Request& request, const std::vector<Diagnostic>& diagnostics);
-  void openSession(job::interactive::SessionRequest request);
+  void openSession(OpenRequest request);
+  void runScript(const std::vector<std::string>& lines);
+  void waitForSave(const WaitForSaveRequest& request);
+  void retryNow();
+  OpenRequest reopening() const;
+  void watchSaves();
+  void showsLife() { lastSign_ = clock_.seconds(); }
   void closeSession();
   void applyCommand(const job::interactive::Command& command);
   void pickPixel(const PickRequest& request);
@@ -155,6 +191,7 @@ class SessionThread {
   void step();
   void updateDepth();
   void measureRays();
+  void warnAboutResult();
   void addPrinted(const job::Printed& printed);
   void report(const std::vector<job::interactive::Event>& events);
   void guarded(const std::function<void()>& function);
@@ -175,9 +212,10 @@ class SessionThread {
   std::vector<SaveRequest> saves_;
   std::optional<Request> retry_;  // opens a program that has errors; repeated when one of its files is saved
   std::optional<job::SourceWatcher> retryWatcher_;
-  double lastCommand_ = -1e9;  // on clock_
-  double lastImage_ = 0;       // on clock_
-  double lastRates_ = 0;       // on clock_
+  double lastCommand_ = -1e9;                // on clock_
+  double lastImage_ = 0;                     // on clock_
+  double lastRates_ = 0;                     // on clock_
+  std::vector<std::string> resultWarnings_;  // of the last complete image
   std::uint64_t sessions_ = 0;
   std::uint64_t explainedRestarts_ = 0;  // Session::restarts() of next_.explanation
   bool depthShown_ = false;
@@ -188,6 +226,11 @@ class SessionThread {
   std::atomic<bool> hasRequests_ = false;
   std::atomic<bool> urgent_ = false;  // a request changes the samples
   std::atomic<bool> hung_ = false;
+  std::atomic<bool> working_ = false;
+  std::atomic<double> lastSign_ = 0;  // of life, on clock_
+  std::mutex savesMutex_;             // of the members for savedWhileBlocked()
+  std::optional<job::SourceWatcher> savesWatcher_;
+  double lastSave_ = -1e9;  // on clock_
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Request> requests_;

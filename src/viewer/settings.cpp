@@ -82,7 +82,8 @@ Settings parseSettings(const std::string& text, const std::string& file) {
   if (!(settings.scale > 0.0f)) settings.scale = 0.0f;
   if (settings.scale > 0.0f) settings.scale = std::clamp(settings.scale, 0.5f, kMaxScale);
   settings.windowSize = glm::clamp(settings.windowSize, uvec2(kMinWindowSide), uvec2(kMaxWindowSide));
-  settings.panelWidth = settings.panelWidth > 0.0f ? std::clamp(settings.panelWidth, 200.0f, 1000.0f) : 352.0f;
+  settings.panelWidth =
+      settings.panelWidth > 0.0f ? std::clamp(settings.panelWidth, kMinPanelWidth, kMaxPanelWidth) : 352.0f;
   if (settings.recentFiles.size() > kMaxRecentFiles) settings.recentFiles.resize(kMaxRecentFiles);
   return settings;
 }

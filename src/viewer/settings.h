@@ -17,6 +17,7 @@ enum class Theme { dark, light };
 
 inline constexpr std::size_t kMaxRecentFiles = 12;
 inline constexpr float kMaxScale = 4.0f;
+inline constexpr float kMinPanelWidth = 200.0f, kMaxPanelWidth = 1000.0f;
 
 struct Settings {
   Theme theme = Theme::dark;
@@ -25,7 +26,7 @@ struct Settings {
   float scale = 0.0f;           // size of text and controls, [0.5, kMaxScale]; 0 means that of the display
   uvec2 windowSize{1280, 800};  // screen coordinates, which are pixels unless the window system scales the window
   bool panels = true;           // the panels beside the image are visible
-  float panelWidth = 352.0f;    // pixels at scale 1, [200, 1000]
+  float panelWidth = 352.0f;    // pixels at scale 1, [kMinPanelWidth, kMaxPanelWidth]
   std::set<std::string> openPanels{"Scene", "Selection", "Display", "Parameters"};
   std::vector<std::string> recentFiles;  // absolute paths of scenes and programs, the latest first
   bool operator==(const Settings&) const = default;

@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds kPause{20};
 ViewerProcess::ViewerProcess(const XServer& server, const std::filesystem::path& folder,
                              const std::vector<std::string>& arguments,
                              const std::vector<std::pair<std::string, std::string>>& environment)
-    : events_(folder / "events.jsonl"), errors_(folder / "errors.txt") {
+    : display_(server.display()), events_(folder / "events.jsonl"), errors_(folder / "errors.txt") {
   std::filesystem::remove(events_);
   std::vector<std::string> all{QUINTET_VIEW_BINARY, "--events", events_.string()};
   all.insert(all.end(), arguments.begin(), arguments.end());
@@ -56,6 +56,10 @@ ViewerProcess::ViewerProcess(const XServer& server, const std::filesystem::path&
     ::kill(process_, SIGKILL);
     throw std::runtime_error(std::string(error.what()) + ": " + readErrors());
   }
+}
+
+void ViewerProcess::findWindowAgain() {
+  window_ = std::make_unique<XWindow>(display_, [this] { return running(); });
 }
 
 ViewerProcess::~ViewerProcess() {

@@ -34,6 +34,7 @@ class ViewerProcess {
   ViewerProcess& operator=(const ViewerProcess&) = delete;
 
   XWindow& window() { return *window_; }
+  void findWindowAgain();  // after the process has replaced itself and its window
 
   // Waits for an event after the last one that this function returned. Throws std::runtime_error after two minutes, or
   // if the process ends.
@@ -60,6 +61,7 @@ class ViewerProcess {
   void readEvents();
   std::string readErrors() const;
 
+  std::string display_;
   std::filesystem::path events_, errors_;
   pid_t process_ = -1;
   int status_ = -1;

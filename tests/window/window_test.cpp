@@ -350,6 +350,159 @@ TEST_F(WindowTest, SelectsAnObjectAndEditsItsMaterial) {
   EXPECT_LE(largestDifference(command), 1) << "the script repeats the edit";
 }
 
+TEST_F(WindowTest, EscapeClosesOnlyTheMenu) {
+  openPanels(R"("Selection")");
+  ViewerProcess& viewer = startScene("normals");
+  const auto [x, y] = imageCenter();
+  viewer.window().click(x, y);
+  viewer.control("Selection/Show");
+  viewer.clickControl("Edit");
+  viewer.control("Undo");
+  viewer.window().key("Escape");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Undo")) << "the menu is closed";
+  EXPECT_TRUE(viewer.hasControl("Selection/Show")) << "the selection stays";
+  viewer.window().key("Escape");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Selection/Show"));
+}
+
+TEST_F(WindowTest, NamesTheStepsOfUndo) {
+  openPanels(R"("Parameters")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  viewer.clickControl("Parameters/swapped");
+  viewer.waitForImage();
+  viewer.clickControl("Edit");
+  viewer.control("Undo parameter 'swapped'");
+  viewer.window().key("Escape");
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  viewer.control("undone: parameter 'swapped'");
+  viewer.clickControl("Edit");
+  viewer.control("Redo parameter 'swapped'");
+  viewer.window().key("Escape");
+}
+
+// The keys arrive faster than the window draws frames, and before the field has the focus.
+TEST_F(WindowTest, LosesNoKeysOfAFastTypist) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  viewer.window().key("s", {"Control_L"});
+  viewer.window().typeFast({"a", "s", "s", "BackSpace", "BackSpace", "BackSpace", "s", "h", "o", "o", "t", "period",
+                            "p", "n", "g", "Return"});
+  viewer.waitFor("saved");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "shoot.png"));
+}
+
+TEST_F(WindowTest, FiltersWhileTheUserTypes) {
+  std::string scene = kScene;
+  for (int i = 0; i < 24; ++i)
+    scene += "\n[[instance]]\nof = \"wall\"\nname = \"" + std::string(i == 20 ? "lamp" : "panel") + std::to_string(i) +
+             "\"\ntranslate = [0, 0, -" + std::to_string(i + 1) + "]\n";
+  writeFile(folder_ / "wall.scene.toml", scene);
+  openPanels(R"("Scene")");
+  ViewerProcess& viewer = startScene("normals");
+  viewer.control("Scene/panel0");
+  viewer.clickControl("Scene/Filter");
+  viewer.settle();
+  for (const char* key : {"l", "a", "m"}) viewer.window().key(key);
+  viewer.control("Scene/lamp20");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Scene/panel0")) << "without Enter";
+}
+
+TEST_F(WindowTest, TheEdgeOfThePanelsChangesTheirWidth) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  const int before = viewer.imageArea()[2];
+  const auto [left, top, right, bottom] = viewer.control("Edge of the panels");
+  const int x = (left + right) / 2, y = (top + bottom) / 2;
+  viewer.window().move(x, y);
+  viewer.settle();
+  viewer.window().press(1);
+  viewer.settle();
+  viewer.window().move(x + 60, y);
+  viewer.settle();
+  viewer.window().release(1);
+  viewer.settle();
+  EXPECT_NEAR(viewer.imageArea()[2], before + 60, 6);
+  EXPECT_THAT(readTextFile(folder_ / "config/quintet/viewer.json"), HasSubstr("\"panelWidth\": 29")) << "is stored";
+}
+
+TEST_F(WindowTest, KeepsTheSamplesIfTheWindowChanges) {
+  ViewerProcess& viewer = start({"wall.scene.toml", "--program", "normals", "--spp", "1000000"});
+  const auto isFull = [](const Json& event) { return event["event"] == "image" && event["factor"] == 1; };
+  const Json first = viewer.waitFor(isFull);
+  viewer.settle();
+  std::this_thread::sleep_for(std::chrono::seconds(6));  // so that much would be lost
+  viewer.window().key("Tab");
+  viewer.window().resize(760, 500);
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  EXPECT_EQ(right, 760) << "no panels";
+  const std::string button = "Render at 760 \u00d7 " + std::to_string(bottom - top);
+  viewer.control(button);
+  Json last = first;
+  const auto isLast = [&](const Json& event) {
+    EXPECT_NE(event["event"], "restarted") << "the samples stay";
+    if (event["event"] == "image") last = event;
+    return event["event"] == "image" && event["samples"].get<int>() > 2 * first["samples"].get<int>();
+  };
+  viewer.waitFor(isLast);
+  EXPECT_EQ(last["width"], first["width"]) << "scaled";
+  imageColor();  // a screenshot
+  viewer.window().key("0");
+  viewer.waitFor([](const Json& event) { return event["event"] == "image" && event["width"] == 760; });
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl(button));
+}
+
+TEST_F(WindowTest, MarksPixelsThatAreNotFinite) {
+  writeFile(folder_ / "flat.rt.glsl", flatProgram("sqrt(color - 2.0)"));
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  expectColor({255, 0, 255}, "NaN");
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  viewer.control(std::to_string((right - left) * (bottom - top)) + " pixels are NaN or infinite");
+}
+
+// A save ends the hang: the process replaces itself, and with it the threads of the driver.
+TEST_F(WindowTest, OpensTheProgramAgainAfterAHang) {
+  openPanels(R"("Parameters")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  viewer.clickControl("Parameters/swapped");
+  viewer.waitForImage();
+  expectColor(kBlue, "the parameter is set");
+  const std::string endless = "vec3(endless(color.b))";
+  std::string program = flatProgram(endless);
+  program.insert(program.find("/**** COMMON END"),
+                 "float endless(float x) { while (x < 2.0) x = fract(x + 0.37); return x; }\n");
+  writeFile(folder_ / "flat.rt.glsl", program);
+  viewer.waitFor("reloaded");
+  viewer.control("Waiting");
+  viewer.control("Stop");
+  imageColor();  // a screenshot
+  writeFile(folder_ / "flat.rt.glsl", flatProgram("color.gbr"));
+  viewer.waitForImage();
+  viewer.findWindowAgain();
+  viewer.settle();
+  expectColor(kGreen, "the repaired version, with the value of the parameter");
+}
+
+// Stop opens the scene again after a save, and a window whose work hangs can be closed.
+TEST_F(WindowTest, StopsAndClosesDuringAHang) {
+  std::string program = flatProgram("vec3(endless(color.r))");
+  program.insert(program.find("/**** COMMON END"),
+                 "float endless(float x) { while (x < 2.0) x = fract(x + 0.37); return x; }\n");
+  writeFile(folder_ / "flat.rt.glsl", program);
+  ViewerProcess& viewer = start({"wall.scene.toml", "--program", "flat.rt.glsl", "--spp", "4"});
+  viewer.clickControl("Stop");
+  viewer.control("Try again");
+  viewer.findWindowAgain();
+  imageColor();  // a screenshot
+  viewer.clickControl("Try again");
+  viewer.control("Stop");
+  viewer.window().close();
+  EXPECT_EQ(viewer.finish().status, 0);
+}
+
 TEST_F(WindowTest, ReportsABrokenShaderAndContinues) {
   ViewerProcess& viewer = startScene("flat.rt.glsl");
   expectColor(kRed, "the first version");
@@ -498,6 +651,7 @@ TEST_F(WindowTest, ComparesWithADroppedImage) {
   const int y = (top + 2 * bottom) / 3;
   EXPECT_TRUE(isClose(colorAt(shot, left + 20, y), kRed)) << "the image to the left of the line";
   EXPECT_TRUE(isClose(colorAt(shot, right - 20, y), kGreen)) << "the reference to the right";
+  viewer.control("Compare/scaled");
   // The line is dragged to the left.
   viewer.window().move((left + right) / 2, y);
   viewer.settle();
@@ -510,6 +664,34 @@ TEST_F(WindowTest, ComparesWithADroppedImage) {
   EXPECT_TRUE(isClose(colorAt(viewer.window().screenshot(), left + 90, y), kGreen));
   viewer.window().key("x");
   expectColor(kRed, "no comparison");
+}
+
+// A render in linear values is a reference, although such files can be environments.
+TEST_F(WindowTest, ComparesWithFilesOfLinearValues) {
+  openPanels(R"("Compare")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  const auto writeGreen = [&](const char* name, int width, int height) {
+    io::Image image = io::makeImage(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 3,
+                                    io::PixelType::f32, io::ColorEncoding::linear);
+    for (std::size_t i = 1; i < image.sampleCount(); i += 3) image.samples<float>()[i] = 1.0f;
+    io::writeImage(folder_ / name, image);
+  };
+  writeGreen("same.exr", right - left, bottom - top);
+  writeGreen("b.hdr", 8, 4);
+  EXPECT_TRUE(viewer.window().drop((folder_ / "same.exr").string(), 200, 200));
+  viewer.control("Compare/Mode");
+  viewer.settle();
+  const int y = (top + 2 * bottom) / 3;
+  EXPECT_TRUE(isClose(colorAt(viewer.window().screenshot(), right - 20, y), kGreen)) << "the reference";
+  EXPECT_FALSE(viewer.hasControl("Compare/scaled"));
+  viewer.clickControl("Compare/Remove reference");
+  viewer.clickControl("Compare/Choose a file...");
+  viewer.control("Open");
+  viewer.settle();
+  viewer.window().typeFast({"b", "period", "h", "d", "r", "Return"});
+  viewer.control("Compare/scaled");
+  imageColor();  // a screenshot
 }
 
 TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {

@@ -144,6 +144,16 @@ void XWindow::key(const std::string& symbol, const std::vector<std::string>& mod
   for (const std::string& modifier : modifiers) sendKey(modifier, false);
 }
 
+void XWindow::typeFast(const std::vector<std::string>& symbols) {
+  for (const std::string& symbol : symbols) {
+    const KeyCode code = ::XKeysymToKeycode(display_, ::XStringToKeysym(symbol.c_str()));
+    if (code == 0) throw std::runtime_error("no key " + symbol);
+    ::XTestFakeKeyEvent(display_, code, True, CurrentTime);
+    ::XTestFakeKeyEvent(display_, code, False, CurrentTime);
+  }
+  ::XSync(display_, False);
+}
+
 void XWindow::resize(unsigned width, unsigned height) {
   ::XResizeWindow(display_, window_, width, height);
   ::XSync(display_, False);

@@ -49,6 +49,8 @@ class XWindow {
   void drag(int fromX, int fromY, int toX, int toY, unsigned button = 1);
   // A key by the name of its symbol, "z" or "Home", while the modifiers "Control_L" or "Shift_L" are held.
   void key(const std::string& symbol, const std::vector<std::string>& modifiers = {});
+  // Several keys without a pause, as a fast typist or a tool presses them.
+  void typeFast(const std::vector<std::string>& symbols);
   void resize(unsigned width, unsigned height);
   void hide();
   void show();

@@ -15,6 +15,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "gui/style.h"
 
@@ -49,7 +50,8 @@ constexpr ImWchar kGlyphs[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x2010, 0x2044, 0
 
 }  // namespace
 
-Gui::Gui(Window& window, Theme theme, float scale) : theme_(theme), scale_(scale), pixelScale_(window.pixelScale()) {
+Gui::Gui(Window& window, Theme theme, float scale)
+    : window_(window), theme_(theme), scale_(scale), pixelScale_(window.pixelScale()) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // the settings are in viewer/settings.h
@@ -57,11 +59,16 @@ Gui::Gui(Window& window, Theme theme, float scale) : theme_(theme), scale_(scale
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.BackendRendererName = "quintet";
   io.ConfigWindowsMoveFromTitleBarOnly = true;
-  ImGui_ImplGlfw_InitForVulkan(window.handle(), /*install_callbacks=*/true);
+#if IMGUI_VERSION_NUM >= 18700
+  io.ConfigInputTrickleEventQueue = false;  // Window::waitForEvents() does this
+#endif
+  ImGui_ImplGlfw_InitForVulkan(window.handle(), /*install_callbacks=*/false);
+  window_.setRawInput(this);
   loadFont();
 }
 
 Gui::~Gui() {
+  window_.setRawInput(nullptr);
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
 }
@@ -164,6 +171,28 @@ gpu::DrawList Gui::endFrame() {
 
 bool Gui::wantsMouse() { return ImGui::GetIO().WantCaptureMouse; }
 bool Gui::wantsKeyboard() { return ImGui::GetIO().WantTextInput; }
+
+bool Gui::closePopups() {
+  if (!ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) return false;
+  ImGui::ClosePopupToLevel(0, /*restore_focus_to_window_under_popup=*/true);
+  return true;
+}
+
+void Gui::key(int key, int scancode, int action, int modifiers) {
+  ImGui_ImplGlfw_KeyCallback(window_.handle(), key, scancode, action, modifiers);
+}
+void Gui::character(unsigned codepoint) { ImGui_ImplGlfw_CharCallback(window_.handle(), codepoint); }
+void Gui::button(int button, int action, int modifiers) {
+  ImGui_ImplGlfw_MouseButtonCallback(window_.handle(), button, action, modifiers);
+}
+void Gui::scroll(double x, double y) { ImGui_ImplGlfw_ScrollCallback(window_.handle(), x, y); }
+void Gui::cursor([[maybe_unused]] double x, [[maybe_unused]] double y) {
+#if IMGUI_VERSION_NUM >= 18700  // earlier versions read the position in each frame
+  ImGui_ImplGlfw_CursorPosCallback(window_.handle(), x, y);
+#endif
+}
+void Gui::cursorEnter(int entered) { ImGui_ImplGlfw_CursorEnterCallback(window_.handle(), entered); }
+void Gui::focus(int focused) { ImGui_ImplGlfw_WindowFocusCallback(window_.handle(), focused); }
 
 std::array<float, 4> Gui::background() const {
   const vec3 color = backgroundColor(theme_);

@@ -30,11 +30,11 @@ struct FontPixels {
 };
 
 // One per process.
-class Gui {
+class Gui : private RawInput {
  public:
   // `scale`: size of text and controls, in screen coordinates.
   Gui(Window& window, Theme theme, float scale);
-  ~Gui();
+  ~Gui() override;
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
@@ -51,12 +51,22 @@ class Gui {
 
   static bool wantsMouse();     // the pointer is over a panel, or a panel is being dragged
   static bool wantsKeyboard();  // a text is being edited
+  // Closes the open menus and lists. Returns false if there are none.
+  static bool closePopups();
   std::array<float, 4> background() const;
 
  private:
+  void key(int key, int scancode, int action, int modifiers) override;
+  void character(unsigned codepoint) override;
+  void button(int button, int action, int modifiers) override;
+  void scroll(double x, double y) override;
+  void cursor(double x, double y) override;
+  void cursorEnter(int entered) override;
+  void focus(int focused) override;
   void loadFont();
   void applyStyle();
 
+  Window& window_;
   Theme theme_;
   float scale_;
   float pixelScale_;  // of the window when it was opened

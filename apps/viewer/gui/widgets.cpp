@@ -124,6 +124,13 @@ bool editNumbers(const char* label, double* values, int count, const NumberRange
   return changed;
 }
 
+std::string fullValues(const Values& values, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    text += fmt::format("{}{:.6g}", i > 0 ? "   " : "", values[static_cast<std::size_t>(i)]);
+  return text;
+}
+
 }  // namespace
 
 bool vectorField(const char* label, double* values, int count, const NumberRange& range, std::string_view help) {
@@ -138,7 +145,10 @@ bool vectorField(const char* label, double* values, int count, const NumberRange
     state().pending[id] = {shown, ImGui::GetTime()};
     std::copy_n(shown.begin(), count, values);
   }
-  return endRow(label, id, help, changed);
+  // A narrow panel cuts the numbers.
+  const std::string values = count > 1 ? fullValues(shown, count) : std::string();
+  const std::string separator = help.empty() || values.empty() ? "" : "\n";
+  return endRow(label, id, std::string(help) + separator + values, changed);
 }
 
 bool numberField(const char* label, double& value, const NumberRange& range, std::string_view help) {
@@ -183,7 +193,11 @@ bool choiceField(const char* label, std::size_t& index, const std::vector<std::s
   bool changed = false;
   const bool open = ImGui::BeginCombo(hidden.c_str(), shown < names.size() ? names[shown].c_str() : "");
   logWidget(label);
-  if (!help.empty()) tooltip(help);
+  const std::string name = shown < names.size() ? names[shown] : std::string();
+  const bool isCut = ImGui::CalcTextSize(name.c_str()).x >
+                     ImGui::GetItemRectSize().x - ImGui::GetFrameHeight() - 2.0f * ImGui::GetStyle().FramePadding.x;
+  if (isCut || !help.empty())
+    tooltip(isCut ? name + (help.empty() ? "" : "\n" + std::string(help)) : std::string(help));
   if (!open) return false;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (ImGui::Selectable(fmt::format("{}##{}", names[i], i).c_str(), i == shown) && i != shown) {
@@ -216,6 +230,23 @@ bool textField(const char* label, std::string& value, std::string_view help) {
   if (changed) value = shown;
   if (!ImGui::IsItemActive() && edited == id) edited = 0;
   return endRow(label, id, help, changed);
+}
+
+bool searchField(const char* label, std::string& value, std::string_view help) {
+  beginRow(label, help);
+  const std::string hidden = hiddenLabel(label);
+  const bool changed = ImGui::InputTextWithHint(hidden.c_str(), "type a part of a name", &value);
+  if (!help.empty()) tooltip(help);
+  logWidget(label);
+  return changed;
+}
+
+void sameLineIfFits(const char* label) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float width = ImGui::CalcTextSize(label, nullptr, /*hide_text_after_double_hash=*/true).x;
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const float end = ImGui::GetItemRectMax().x + style.ItemSpacing.x + width + 2.0f * style.FramePadding.x;
+  if (end <= right) ImGui::SameLine();
 }
 
 bool button(const char* label, std::string_view help, bool enabled, float width) {

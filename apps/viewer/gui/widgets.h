@@ -33,9 +33,11 @@ bool checkBox(const char* label, bool& value, std::string_view help = {});
 // `index`: of `names`; those out of range show an empty text.
 bool choiceField(const char* label, std::size_t& index, const std::vector<std::string>& names,
                  std::string_view help = {});
-bool textField(const char* label, std::string& value, std::string_view help = {});  // true when the edit ends
+bool textField(const char* label, std::string& value, std::string_view help = {});    // true when the edit ends
+bool searchField(const char* label, std::string& value, std::string_view help = {});  // true while the user types
 // `width`: pixels; 0 means that of the label.
 bool button(const char* label, std::string_view help = {}, bool enabled = true, float width = 0);
+void sameLineIfFits(const char* label);                     // the next button() stays in this row if its label has room
 void textRow(const char* label, const std::string& value);  // a value that cannot be edited
 // A row of a list; `selected` rows have the color of selected controls. Returns true if it was clicked.
 bool listRow(const char* label, bool selected);

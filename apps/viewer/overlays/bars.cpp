@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/plural.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
 #include "overlays/overlays.h"
@@ -41,7 +42,7 @@ std::string progressText(const Snapshot& snapshot) {
   return text;
 }
 
-// The values of the pixel below the pointer.
+// The values of the pixel below the pointer. They are means, unlike those of Explain, which shows one sample.
 std::string pixelText(const ViewState& state) {
   const io::Image* image = state.snapshot->image.get();
   if (!image || !state.hoveredPixel || state.snapshot->state.size.x == 0) return {};
@@ -49,8 +50,24 @@ std::string pixelText(const ViewState& state) {
   const uvec2 at = *state.hoveredPixel * uvec2(image->width, image->height) / size;
   if (at.x >= image->width || at.y >= image->height) return {};
   const auto values = image->pixel<float>(at.x, at.y);
-  return fmt::format("({}, {})   {:.4g}  {:.4g}  {:.4g}", state.hoveredPixel->x, state.hoveredPixel->y, values[0],
-                     values[1], values[2]);
+  const Snapshot& snapshot = *state.snapshot;
+  std::string what;
+  if (snapshot.state.output != snapshot.program->outputs.front().name) what = snapshot.state.output + ", ";
+  if (snapshot.countsFrames)
+    what += fmt::format("after {}", counted(snapshot.progress.samples, "frame"));
+  else
+    what += fmt::format("mean of {}", counted(snapshot.progress.samples, "sample"));
+  return fmt::format("({}, {})   {}:   {:.4g}  {:.4g}  {:.4g}", state.hoveredPixel->x, state.hoveredPixel->y, what,
+                     values[0], values[1], values[2]);
+}
+
+// "3 pixels are not finite"; empty if all are.
+std::string notFiniteText(const ViewState& state) {
+  const std::uint64_t pixels = state.display ? state.display->histogram.notFinitePixels : 0;
+  const std::uint64_t samples = state.snapshot->droppedSamples;
+  if (pixels > 0) return fmt::format("{} {} NaN or infinite", counted(pixels, "pixel"), nounFor(pixels, "is", "are"));
+  if (samples > 0) return fmt::format("{} NaN or infinite, discarded", counted(samples, "sample was", "samples were"));
+  return {};
 }
 
 }  // namespace
@@ -79,6 +96,12 @@ void statusBar(const ViewState& state, const Area& area) {
       ImGui::TextColored(palette(state.settings.theme).error, "%s", snapshot.renderError.c_str());
     else
       ImGui::TextUnformatted(progressText(snapshot).c_str());
+    if (const std::string text = notFiniteText(state); !text.empty()) {
+      ImGui::SameLine(0.0f, 2.0f * ImGui::GetFontSize());
+      ImGui::TextColored(palette(state.settings.theme).warning, "%s", text.c_str());
+      logControl(text.c_str());
+      tooltip("Marked in the image. Ctrl + click a marked pixel, and Explain shows the first value that is not finite");
+    }
     const std::string right = pixelText(state);
     const float width = ImGui::CalcTextSize(right.c_str()).x;
     ImGui::SameLine(std::max(area.size.x - width - ImGui::GetStyle().WindowPadding.x, ImGui::GetCursorPosX()));

@@ -16,6 +16,8 @@
 namespace quintet::viewer {
 namespace {
 
+constexpr int kMostFramesUntilFocus = 8;
+
 const char* useText(const FolderEntry& entry) {
   switch (entry.use) {
     case FileUse::scene: return "scene";
@@ -31,6 +33,7 @@ const char* useText(const FolderEntry& entry) {
 }  // namespace
 
 void FileDialog::open() { show(Purpose::open, {}); }
+void FileDialog::openReference() { show(Purpose::reference, {}); }
 void FileDialog::save(const std::string& name) { show(Purpose::save, name); }
 void FileDialog::saveExplanation(const std::string& name) { show(Purpose::saveExplanation, name); }
 
@@ -38,6 +41,7 @@ void FileDialog::show(Purpose purpose, const std::string& name) {
   purpose_ = purpose;
   name_ = name;
   visible_ = focus_ = true;
+  framesUntilFocus_ = kMostFramesUntilFocus;
   enter(folder_);
 }
 
@@ -64,7 +68,7 @@ void FileDialog::list() {
       if (!entry.folder || entry.use == FileUse::program) name_ = entry.name;
       if (twice && entry.folder && entry.use != FileUse::program)
         return enter(folder_ / entry.name);  // changes entries_
-      if (twice && (!entry.folder || purpose_ == Purpose::open)) chosen_ = folder_ / entry.name;
+      if (twice && (!entry.folder || opensFile())) chosen_ = folder_ / entry.name;
     }
     const char* use = useText(entry);
     const float width = ImGui::CalcTextSize(use).x;
@@ -74,7 +78,7 @@ void FileDialog::list() {
 }
 
 std::optional<std::filesystem::path> FileDialog::choose(const std::filesystem::path& path) {
-  if (purpose_ == Purpose::open) {
+  if (opensFile()) {
     std::error_code error;
     if (useOfFile(path) == FileUse::unknown && std::filesystem::is_directory(path, error)) {
       enter(path);
@@ -98,7 +102,7 @@ std::optional<std::filesystem::path> FileDialog::choose(const std::filesystem::p
     }
   }
   std::error_code error;
-  if (purpose_ != Purpose::open && path != confirmed_ && std::filesystem::exists(path, error)) {
+  if (!opensFile() && path != confirmed_ && std::filesystem::exists(path, error)) {
     error_ = fmt::format("{}: the file exists; save again to replace it", path.filename().string());
     confirmed_ = path;
     focus_ = true;  // so that Enter saves again
@@ -110,16 +114,20 @@ std::optional<std::filesystem::path> FileDialog::choose(const std::filesystem::p
 
 std::optional<std::filesystem::path> FileDialog::draw(float scale) {
   if (!visible_) return std::nullopt;
+  framesUntilFocus_ = std::max(framesUntilFocus_ - 1, 0);
   chosen_.reset();
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const bool opens = purpose_ == Purpose::open;
+  const bool opens = opensFile();
   ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(620.0f * scale, display.x), std::min(480.0f * scale, display.y)},
                            ImGuiCond_Appearing);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6.0f * scale);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
   const bool isImage = purpose_ == Purpose::save;
-  const char* title = opens ? "Open###files" : isImage ? "Save the image###files" : "Save the explanation###files";
+  const char* title = purpose_ == Purpose::reference ? "Compare with an image###files"
+                      : opens                        ? "Open###files"
+                      : isImage                      ? "Save the image###files"
+                                                     : "Save the explanation###files";
   if (ImGui::Begin(title, &visible_, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse)) {
     if (button("Up", "The parent folder")) enter(folder_.parent_path());
     ImGui::SameLine();
@@ -130,7 +138,9 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
     if (!error_.empty())
       ImGui::TextWrapped("%s", error_.c_str());
     else
-      ImGui::TextDisabled("%s", opens     ? "You can also type a path."
+      ImGui::TextDisabled("%s", purpose_ == Purpose::reference
+                                    ? "An image in any format: PNG, JPEG, WebP, OpenEXR, Radiance HDR, KTX2."
+                                : opens   ? "You can also type a path."
                                 : isImage ? "PNG as displayed. OpenEXR and HDR have linear values."
                                           : "JSON, as quintet explain-pixel --json writes it.");
     if (focus_) ImGui::SetKeyboardFocusHere();
@@ -139,6 +149,7 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
     const float actionWidth = ImGui::CalcTextSize(action).x + 4.0f * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-actionWidth - ImGui::GetStyle().ItemSpacing.x);
     const bool entered = ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemActive()) framesUntilFocus_ = 0;
     ImGui::SameLine();
     if ((button(action, "", !name_.empty()) || entered) && !name_.empty()) chosen_ = folder_ / name_;
   }

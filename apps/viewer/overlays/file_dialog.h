@@ -14,14 +14,17 @@ namespace quintet::viewer {
 
 class FileDialog {
  public:
-  enum class Purpose { open, save, saveExplanation };
+  enum class Purpose { open, reference, save, saveExplanation };
 
   // They start in the folder of the last choice.
   void open();
+  void openReference();
   void save(const std::string& name);
   void saveExplanation(const std::string& name);
   void close() { visible_ = false; }
   bool visible() const { return visible_; }
+  // The field for the name gets the focus in one of the next frames. Until then, characters must wait.
+  bool awaitsFocus() const { return visible_ && framesUntilFocus_ > 0; }
   Purpose purpose() const { return purpose_; }
 
   // Draws the dialog. Returns the path when the user has chosen one; the dialog is then closed. `scale`: size of text
@@ -29,12 +32,14 @@ class FileDialog {
   std::optional<std::filesystem::path> draw(float scale);
 
  private:
+  bool opensFile() const { return purpose_ == Purpose::open || purpose_ == Purpose::reference; }
   void show(Purpose purpose, const std::string& name);
   void enter(const std::filesystem::path& folder);
   void list();  // shows entries_
   std::optional<std::filesystem::path> choose(const std::filesystem::path& path);
 
   bool visible_ = false, focus_ = false;
+  int framesUntilFocus_ = 0;  // at most
   Purpose purpose_ = Purpose::open;
   std::filesystem::path folder_;
   std::string name_;

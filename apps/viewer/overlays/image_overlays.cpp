@@ -14,11 +14,13 @@
 #include "gui/widgets.h"
 #include "overlay/box_outline.h"
 #include "overlays/overlays.h"
+#include "viewer/labels.h"
 
 namespace quintet::viewer {
 namespace {
 
 constexpr ImU32 kPrinted = IM_COL32(110, 200, 255, 255);
+constexpr ImU32 kNotFinite = IM_COL32(255, 0, 255, 255);
 constexpr ImU32 kSelected = IM_COL32(255, 170, 60, 255);
 
 ImU32 toColor(const vec3& color) {
@@ -82,6 +84,74 @@ void explainedPixel(const ViewState& state, const Area& area) {
   list.PopClipRect();
 }
 
+void notFinitePixels(const ViewState& state, const Area& area) {
+  if (!state.controls.marksNotFinite || !state.snapshot->image) return;
+  const io::Image& image = *state.snapshot->image;
+  const overlay::ImagePlacement& at = state.placement;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect({area.origin.x, area.origin.y}, {area.origin.x + area.size.x, area.origin.y + area.size.y});
+  // Images of reduced resolution have larger pixels.
+  const vec2 pixel = at.scale * vec2(at.size) / vec2(image.width, image.height);
+  const auto mark = [&](uvec2 position) {
+    const vec2 center = at.origin + pixel * (vec2(position) + 0.5f);
+    const float radius = 0.7f * std::max(pixel.x, pixel.y) + 4.0f * state.scale;
+    list.AddCircle({center.x, center.y}, radius, kShade, 0, 3.5f * state.scale);
+    list.AddCircle({center.x, center.y}, radius, kNotFinite, 0, 1.5f * state.scale);
+  };
+  // Where many are close to each other, their color shows them.
+  if (state.display && state.display->histogram.notFinitePixels <= kMaxNotFinite)
+    for (const uvec2 position : state.display->notFinite) mark(position);
+  for (const uvec2 position : state.snapshot->droppedPixels) mark(position);
+  list.PopClipRect();
+}
+
+void sizeNote(ViewState& state, const Area& area) {
+  if (!state.keptSize) return;
+  const Snapshot& snapshot = *state.snapshot;
+  const std::string label = fmt::format("Render at {} × {}##fit", state.viewSize.x, state.viewSize.y);
+  ImGui::SetNextWindowPos({area.origin.x + 12.0f * state.scale, area.origin.y + area.size.y - 12.0f * state.scale},
+                          ImGuiCond_Always, {0.0f, 1.0f});
+  ImGui::SetNextWindowBgAlpha(0.9f);
+  ImGui::Begin("size", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Text("%s",
+              fmt::format("The image of {} × {} is scaled.", snapshot.state.size.x, snapshot.state.size.y).c_str());
+  ImGui::SameLine();
+  if (button(label.c_str(), fmt::format("Discards the samples of {:.0f} s (key 0)", snapshot.progress.seconds)))
+    state.fitsImage = true;
+  ImGui::End();
+}
+
+void waitingNote(ViewState& state, const Area& area) {
+  constexpr double kShownAfter = 0.3, kStopAfter = 5.0;  // seconds
+  if (!state.waitingSince || state.time - *state.waitingSince < kShownAfter) return;
+  const Snapshot& snapshot = *state.snapshot;
+  const double blocked = state.session->blockedSeconds();
+  const bool first = !snapshot.image;
+  const double seconds = first ? state.time - *state.waitingSince : std::max(state.time - *state.waitingSince, blocked);
+  const std::string work = snapshot.explaining       ? "Explaining the pixel"
+                           : !snapshot.stage.empty() ? capitalized(snapshot.stage)
+                           : first                   ? "Rendering the first image; the driver compiles the shaders"
+                                                     : "A launch takes long";
+  const vec2 at = area.origin + vec2(0.5f, first ? 0.5f : 0.08f) * area.size;
+  ImGui::SetNextWindowPos({at.x, at.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowBgAlpha(0.9f);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6.0f * state.scale);
+  ImGui::Begin("waiting", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::TextUnformatted(fmt::format("{}... {:.0f} s", work, seconds).c_str());
+  logControl("Waiting");
+  if (blocked > kStopAfter) {
+    ImGui::TextDisabled("%s", "If a shader does not end, save its repaired file, or stop the work.");
+    if (button("Stop", "End the work. The scene is opened again when a file of the program is saved"))
+      state.stopsWork = true;
+  }
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
 void legend(const ViewState& state, const Area& area) {
   const std::optional<FalseColorRange> range = shownRange(state);
   if (!range || area.size.x < 160.0f || area.size.y < 160.0f) return;
@@ -134,14 +204,18 @@ void splitLine(ViewState& state, const Area& area) {
   ImGui::PopStyleVar();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddLine({x, image.origin.y}, {x, image.origin.y + height}, kWhite, std::max(1.0f, scale));
-  const char* labels[] = {"image", "reference"};
+  const uvec2 size = state.display ? state.display->referenceSize : uvec2(0);
+  const bool isScaled = size.x > 0 && size != image.size;
+  const std::string reference =
+      isScaled ? fmt::format("reference {} × {}, scaled", size.x, size.y) : std::string("reference");
+  const std::string labels[] = {"image", reference};
   for (int side = 0; side < 2; ++side) {
-    const ImVec2 size = ImGui::CalcTextSize(labels[side]);
-    const float left = side == 0 ? x - size.x - 2.0f * grip : x + 2.0f * grip;
+    const ImVec2 extent = ImGui::CalcTextSize(labels[side].c_str());
+    const float left = side == 0 ? x - extent.x - 2.0f * grip : x + 2.0f * grip;
     const float top = image.origin.y + 8.0f * scale;
     list.AddRectFilled({left - 5.0f * scale, top - 2.0f * scale},
-                       {left + size.x + 5.0f * scale, top + size.y + 2.0f * scale}, kShade, 4.0f * scale);
-    list.AddText({left, top}, kWhite, labels[side]);
+                       {left + extent.x + 5.0f * scale, top + extent.y + 2.0f * scale}, kShade, 4.0f * scale);
+    list.AddText({left, top}, kWhite, labels[side].c_str());
   }
 }
 

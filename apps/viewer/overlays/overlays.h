@@ -37,8 +37,11 @@ void failureScreen(ViewState& state, const Area& area);
 
 void selectionOutline(const ViewState& state, const Area& area);  // a box around the selected object
 void explainedPixel(const ViewState& state, const Area& area);    // a mark on it, and on the pixels that print
-void legend(const ViewState& state, const Area& area);            // of false color
-void splitLine(ViewState& state, const Area& area);               // of the comparison; can be dragged
+void notFinitePixels(const ViewState& state, const Area& area);   // a mark on each of them
+void sizeNote(ViewState& state, const Area& area);                // the image is scaled, and how to change that
+void waitingNote(ViewState& state, const Area& area);   // what the session does before the next image, and how long
+void legend(const ViewState& state, const Area& area);  // of false color
+void splitLine(ViewState& state, const Area& area);     // of the comparison; can be dragged
 
 // The rays of the explained pixel.
 void updateRays(ViewState& state);                            // after a change of the explanation or the program

@@ -117,7 +117,12 @@ void startScreen(ViewState& state, const Area& area, const std::vector<Lesson>& 
 void loadingScreen(const ViewState& state, const Area& area) {
   place(area);
   ImGui::Begin("loading", nullptr, kPlain);
-  const std::string text = fmt::format("{}...", state.snapshot->stage);
+  // The time is shown if it is long enough to be of interest.
+  constexpr double kShownSeconds = 2.0;
+  const double seconds = state.loadingSince ? state.time - *state.loadingSince : 0.0;
+  const std::string text = seconds < kShownSeconds
+                               ? fmt::format("{}...", capitalized(state.snapshot->stage))
+                               : fmt::format("{}... {:.0f} s", capitalized(state.snapshot->stage), seconds);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float barWidth = 220.0f * state.scale;
   ImGui::SetCursorPos({0.5f * (area.size.x - size.x), 0.5f * area.size.y - size.y});
@@ -148,15 +153,14 @@ void failureScreen(ViewState& state, const Area& area) {
   ImGui::PopFont();
   ImGui::Spacing();
   ImGui::PushTextWrapPos(0.0f);
-  if (inProgram)
-    ImGui::TextUnformatted("It is opened again as soon as one of its files is saved.");
-  else
-    ImGui::TextUnformatted(state.snapshot->error.c_str());
+  std::string text = inProgram ? "" : state.snapshot->error;
+  if (inProgram || state.snapshot->reopensAfterSave)
+    text += (text.empty() ? "" : ".\n") + std::string("It is opened again as soon as one of its files is saved.");
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
   ImGui::Spacing();
-  if (button("Try again", "Load scene and program again", state.snapshot->request != nullptr))
-    state.session->open(*state.snapshot->request);
+  if (button("Try again", "Load scene and program again", state.snapshot->request != nullptr)) state.session->retry();
   ImGui::SameLine();
   if (button("Open...", "Open another file (Ctrl+O)")) state.requests.push_back(Action::open);
   ImGui::EndChild();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/plural.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
 #include "panels/panels.h"
@@ -94,6 +95,34 @@ void histogramGraph(const Histogram& histogram) {
                   Histogram::kFirstStop, Histogram::kLastStop, histogram.least, histogram.most, histogram.mean));
 }
 
+// The user asks for another size, so the samples may be discarded.
+void changesResolution(ViewState& state, float resolution) {
+  state.settings.resolution = resolution;
+  state.fitsImage = true;
+}
+
+void notFiniteRows(ViewState& state) {
+  const std::uint64_t pixels = state.display->histogram.notFinitePixels, samples = state.snapshot->droppedSamples;
+  if (pixels == 0 && samples == 0) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, palette(state.settings.theme).warning);
+  if (pixels > 0)
+    ImGui::TextWrapped(
+        "%s", fmt::format("{} {} NaN or infinite.", counted(pixels, "pixel"), nounFor(pixels, "is", "are")).c_str());
+  if (samples > 0)
+    ImGui::TextWrapped("%s", fmt::format("{} NaN or infinite, and the program discarded {}.",
+                                         counted(samples, "sample was", "samples were"), nounFor(samples, "it", "them"))
+                                 .c_str());
+  ImGui::PopStyleColor();
+  checkBox("Mark them", state.controls.marksNotFinite,
+           "Magenta instead of the color of the pixel, and a circle around it");
+  const std::vector<uvec2>& found = pixels > 0 ? state.display->notFinite : state.snapshot->droppedPixels;
+  if (found.empty() || !state.snapshot->image) return;
+  if (button("Explain the first one", "As Ctrl + click on this pixel"))
+    state.explainPixel(
+        found.front() * state.snapshot->state.size / uvec2(state.snapshot->image->width, state.snapshot->image->height),
+        state.explain.sample);
+}
+
 }  // namespace
 
 void displayPanel(ViewState& state) {
@@ -110,18 +139,20 @@ void displayPanel(ViewState& state) {
     if (std::abs(state.settings.resolution - std::exp2(-static_cast<float>(i))) < 1e-3f) resolution = i;
   if (!state.fixedSize &&
       choiceField("Resolution", resolution, resolutions, "Pixels of the image per pixel of the window"))
-    state.settings.resolution = std::exp2(-static_cast<float>(resolution));
+    changesResolution(state, std::exp2(-static_cast<float>(resolution)));
   if (!state.display) return;
   histogramGraph(state.display->histogram);
-  if (state.display->histogram.notFinitePixels > 0)
-    ImGui::TextColored(palette(state.settings.theme).warning, "%s",
-                       fmt::format("{} pixels are not finite", state.display->histogram.notFinitePixels).c_str());
+  notFiniteRows(state);
 }
 
 void comparePanel(ViewState& state) {
   DisplayControls& controls = state.controls;
   if (!state.reference) {
-    ImGui::TextDisabled("%s", "Drop a .png, .jpg or .webp file on the window, or:");
+    ImGui::TextWrapped("%s", "Compare with a file or with the image as it is now.");
+    if (button("Choose a file...",
+               "PNG, JPEG, WebP, OpenEXR, Radiance HDR, KTX2. Files can also be dropped on the window"))
+      state.requests.push_back(Action::openReference);
+    sameLineIfFits("Use the current image");
     if (button("Use the current image", "Compare with the image as it is now", state.snapshot->image != nullptr)) {
       state.reference = state.snapshot->image;
       state.referenceFile = "current image";
@@ -130,6 +161,17 @@ void comparePanel(ViewState& state) {
     return;
   }
   textRow("Reference", state.referenceFile);
+  const uvec2 size(state.reference->width, state.reference->height), shown = state.snapshot->state.size;
+  if (size != shown) {
+    textRow("Its size", fmt::format("{} × {}", size.x, size.y));
+    const bool isCut = std::uint64_t{size.x} * shown.y != std::uint64_t{shown.x} * size.y;
+    ImGui::PushStyleColor(ImGuiCol_Text, palette(state.settings.theme).warning);
+    ImGui::TextWrapped("%s", fmt::format("The image has {} × {}, so the reference is scaled{}.", shown.x, shown.y,
+                                         isCut ? " and has bars at its sides" : "")
+                                 .c_str());
+    ImGui::PopStyleColor();
+    logControl("scaled");
+  }
   const std::vector<std::string> modes{"off", "split", "difference", "FLIP"};
   auto mode = static_cast<std::size_t>(controls.compare);
   if (choiceField("Mode", mode, modes, "Split: drag the line. Difference: linear values. FLIP: perceived difference"))

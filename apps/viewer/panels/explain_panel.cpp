@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/diagnostic.h"
 #include "base/plural.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
@@ -67,13 +68,30 @@ void question(ViewState& state) {
     state.explainPixel(*explain.pixel, static_cast<std::uint32_t>(sample));
 }
 
+// The pixel of the image that is shown; nothing if the image is another one.
+std::optional<vec3> meanOf(const ViewState& state, const job::PixelExplanation& explanation) {
+  const Snapshot& snapshot = *state.snapshot;
+  const io::Image* image = snapshot.image.get();
+  const uvec2 pixel = explanation.pixel;
+  if (!image || snapshot.explanationOutdated || snapshot.state.output != snapshot.program->outputs.front().name ||
+      uvec2(image->width, image->height) != explanation.size || pixel.x >= image->width || pixel.y >= image->height)
+    return std::nullopt;
+  const auto values = image->pixel<float>(pixel.x, pixel.y);
+  return vec3(values[0], values[1], values[2]);
+}
+
 // What is known before the tree.
 void result(ViewState& state) {
   const Palette& colors = palette(state.settings.theme);
   const job::PixelExplanation& explanation = *state.explanation;
   if (!explanation.outputs.empty()) {
     const vec3 value = explanation.outputs.front().value;
-    valueRow(state, "Value", value, "What the sample adds to the image, linear Rec. 709");
+    const std::string label =
+        fmt::format("Value of {} {}", explanation.frames ? "frame" : "sample", explanation.sample);
+    valueRow(state, label.c_str(), value, "What the sample adds to the image, linear Rec. 709");
+    if (const std::optional<vec3> mean = meanOf(state, explanation))
+      valueRow(state, explanation.frames ? "Value of image" : "Mean of image", *mean,
+               "The pixel of the image, of all samples until now, as the bar below the image shows it");
     valueRow(state, "Sum", state.explain.tree->contributionSum(),
              "Sum of the contributions of the rays below; it equals the value");
     if (state.explain.tree->sumDiffers())
@@ -83,6 +101,15 @@ void result(ViewState& state) {
   }
   if (explanation.discarded)
     ImGui::TextColored(colors.warning, "%s", "The program discarded the sample: it is not finite.");
+  if (explanation.origin) {
+    const SourceLocation& at = explanation.origin->location;
+    const std::string text = fmt::format("First value that is not finite: {}: {}", locationText(at.file, at.line, 0),
+                                         job::originText(*explanation.origin));
+    ImGui::PushStyleColor(ImGuiCol_Text, colors.error);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+    logControl("origin");
+  }
   if (explanation.lostRecords > 0)
     ImGui::TextColored(colors.warning, "%s",
                        (counted(explanation.lostRecords, "record") + " did not fit into the log.").c_str());
@@ -225,7 +252,7 @@ void comparison(ViewState& state) {
     state.compareExplanation(true);
   }
   if (!explain.kept) return;
-  ImGui::SameLine();
+  sameLineIfFits("Forget A");
   if (button("Forget A")) {
     explain.kept = nullptr;
     state.compareExplanation(false);
@@ -272,7 +299,7 @@ void explainPanel(ViewState& state) {
     return;
   }
   const bool outdated = state.explanation && snapshot.explanationOutdated && !snapshot.explaining;
-  ImGui::SameLine();
+  sameLineIfFits("Explain again");
   if (button("Explain again", "Explain the same pixel of the scene as it is now", !snapshot.explaining))
     state.explainPixel(*explain.pixel, explain.sample);
   question(state);
@@ -288,7 +315,7 @@ void explainPanel(ViewState& state) {
   tree(state);
   details(state);
   if (button("Save...", "Write the explanation as JSON")) state.requests.push_back(Action::saveExplanation);
-  ImGui::SameLine();
+  sameLineIfFits("Copy command");
   if (button("Copy command", "Copy the command line that explains this pixel"))
     state.requests.push_back(Action::copyExplainCommand);
 }

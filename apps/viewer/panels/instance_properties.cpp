@@ -28,7 +28,7 @@ void instanceProperties(ViewState& state, std::size_t index) {
   }
   if (button("Show", "Move the camera so that the object fills the image (F)"))
     state.apply(job::interactive::Frame{instance.name});
-  ImGui::SameLine();
+  sameLineIfFits("Reset");
   if (button("Reset", "Restore the transform of the file", state.snapshot->state.transforms.count(index) > 0))
     state.apply(job::interactive::SetTransform{instance.name, instance.worldFromObject});
   for (const std::size_t material : instance.materials) {

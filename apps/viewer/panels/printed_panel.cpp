@@ -56,10 +56,10 @@ void printedPanel(ViewState& state) {
   }
   if (button("Choose a pixel##print", "The next click on the image chooses the pixel that prints, as the key P does"))
     state.click = ClickUse::print;
-  ImGui::SameLine();
+  sameLineIfFits("All pixels");
   if (button("All pixels")) state.apply(interactive::SetPrint{job::PrintRequest{.all = true}});
   if (!snapshot.print) return;
-  ImGui::SameLine();
+  sameLineIfFits("Stop");
   if (button("Stop", "Print nothing")) state.apply(interactive::SetPrint{});
   if (!snapshot.print->all) {
     const render::Region& pixels = snapshot.print->pixels;

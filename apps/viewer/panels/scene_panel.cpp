@@ -41,6 +41,7 @@ void list(ViewState& state, Selection::Kind kind, std::size_t count, const std::
       const std::string& name = nameOf(index);
       const std::string shown = fittingText(name, ImGui::GetContentRegionAvail().x);
       if (listRow(fmt::format("{}##{}", shown, index).c_str(), selected)) state.selection = revealed = {kind, index};
+      logControl(name.c_str());
       if (shown != name) tooltip(name);
       if (selected && reveals) {
         ImGui::SetScrollHereY();
@@ -102,7 +103,7 @@ void scenePanel(ViewState& state) {
   variantChoice(state, scene.variants);
   animationChoice(state, scene.animations);
   if (scene.instances.size() + scene.materials.size() > 20)
-    textField("Filter", filter, "Show only names that contain this text");
+    searchField("Filter", filter, "Show only names that contain this text");
   else
     filter.clear();
   std::size_t rows = 0;

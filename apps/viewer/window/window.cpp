@@ -74,8 +74,20 @@ std::string letterName(int key, int scancode) {
 
 }  // namespace
 
+// Each callback keeps what happened, and deliver() passes it on in a later frame if this one has enough.
 struct Window::Callbacks {
   static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(::glfwGetWindowUserPointer(handle)); }
+
+  template <class Function>
+  static void wait(GLFWwindow* handle, bool isKey, bool endsFrame, const Function& function) {
+    Window& window = of(handle);
+    window.waiting_.push_back({[&window, function] { function(window); }, isKey, endsFrame});
+  }
+  static vec2 pointer(GLFWwindow* handle) {
+    double x = 0, y = 0;
+    ::glfwGetCursorPos(handle, &x, &y);
+    return {x, y};
+  }
 
   static void key(GLFWwindow* handle, int key, int scancode, int action, int mods) {
     KeyEvent event;
@@ -84,44 +96,73 @@ struct Window::Callbacks {
     if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) event.position = std::string(1, static_cast<char>(key));
     event.modifiers = modifiersOf(mods);
     event.pressed = action != GLFW_RELEASE;
-    of(handle).keyRepeats_ = event.repeated = action == GLFW_REPEAT;
-    if (!event.key.empty() || !event.position.empty()) of(handle).events_.emplace_back(std::move(event));
+    event.repeated = action == GLFW_REPEAT;
+    // The user interface sees which keys are down in a frame. Keys that type a character need not be seen.
+    const bool isModifier = key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
+    const bool isCommand = (key >= GLFW_KEY_ESCAPE && !isModifier) || (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+    wait(handle, true, action == GLFW_PRESS && isCommand && !isModifier, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->key(key, scancode, action, mods);
+      window.keyRepeats_ = event.repeated;
+      if (!event.key.empty() || !event.position.empty()) window.events_.emplace_back(event);
+    });
   }
 
-  // Characters that are neither letters nor the space, which key() reports.
   static void character(GLFWwindow* handle, unsigned codepoint) {
-    if (codepoint <= ' ' || codepoint > '~' || isLetter(static_cast<char>(codepoint))) return;
-    Window& window = of(handle);
-    window.events_.emplace_back(
-        KeyEvent{.key = {static_cast<char>(codepoint)}, .pressed = true, .repeated = window.keyRepeats_});
+    wait(handle, true, false, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->character(codepoint);
+      // Letters and the space are those of key().
+      if (codepoint <= ' ' || codepoint > '~' || isLetter(static_cast<char>(codepoint))) return;
+      window.events_.emplace_back(
+          KeyEvent{.key = {static_cast<char>(codepoint)}, .pressed = true, .repeated = window.keyRepeats_});
+    });
   }
 
   static void button(GLFWwindow* handle, int button, int action, int mods) {
-    if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
-    double x = 0, y = 0;
-    ::glfwGetCursorPos(handle, &x, &y);
-    of(handle).events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
-                                                          : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
-                                                                                              : MouseButton::middle,
-                                                .modifiers = modifiersOf(mods),
-                                                .position = {x, y},
-                                                .pressed = action == GLFW_PRESS});
+    const vec2 at = pointer(handle);
+    wait(handle, false, true, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->button(button, action, mods);
+      if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+      window.events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
+                                                        : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
+                                                                                            : MouseButton::middle,
+                                              .modifiers = modifiersOf(mods),
+                                              .position = at,
+                                              .pressed = action == GLFW_PRESS});
+    });
   }
 
-  static void cursor(GLFWwindow* handle, double x, double y) { of(handle).events_.emplace_back(MoveEvent{{x, y}}); }
+  static void cursor(GLFWwindow* handle, double x, double y) {
+    wait(handle, false, false, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->cursor(x, y);
+      window.events_.emplace_back(MoveEvent{{x, y}});
+    });
+  }
 
-  static void scroll(GLFWwindow* handle, double, double steps) {
-    double x = 0, y = 0;
-    ::glfwGetCursorPos(handle, &x, &y);
-    of(handle).events_.emplace_back(WheelEvent{static_cast<float>(steps), {x, y}});
+  static void cursorEnter(GLFWwindow* handle, int entered) {
+    wait(handle, false, false, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->cursorEnter(entered);
+    });
+  }
+
+  static void scroll(GLFWwindow* handle, double x, double steps) {
+    const vec2 at = pointer(handle);
+    wait(handle, false, false, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->scroll(x, steps);
+      window.events_.emplace_back(WheelEvent{static_cast<float>(steps), at});
+    });
   }
 
   static void drop(GLFWwindow* handle, int count, const char** paths) {
-    of(handle).events_.emplace_back(DropEvent{{paths, paths + count}});
+    wait(handle, false, false, [files = std::vector<std::string>(paths, paths + count)](Window& window) {
+      window.events_.emplace_back(DropEvent{files});
+    });
   }
 
   static void focus(GLFWwindow* handle, int focused) {
-    of(handle).events_.emplace_back(FocusEvent{focused == GLFW_TRUE});
+    wait(handle, false, false, [=](Window& window) {
+      if (window.rawInput_) window.rawInput_->focus(focused);
+      window.events_.emplace_back(FocusEvent{focused == GLFW_TRUE});
+    });
   }
 };
 
@@ -145,6 +186,7 @@ Window::Window(const std::string& title, uvec2 size) {
   ::glfwSetCharCallback(handle_, Callbacks::character);
   ::glfwSetMouseButtonCallback(handle_, Callbacks::button);
   ::glfwSetCursorPosCallback(handle_, Callbacks::cursor);
+  ::glfwSetCursorEnterCallback(handle_, Callbacks::cursorEnter);
   ::glfwSetScrollCallback(handle_, Callbacks::scroll);
   ::glfwSetDropCallback(handle_, Callbacks::drop);
   ::glfwSetWindowFocusCallback(handle_, Callbacks::focus);
@@ -197,14 +239,31 @@ uvec2 Window::windowedSize() const {
   return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
 }
 
+std::optional<glm::ivec2> Window::position() const {
+  if (::glfwGetWindowMonitor(handle_)) return std::nullopt;
+  glm::ivec2 position{0};
+  ::glfwGetWindowPos(handle_, &position.x, &position.y);
+  if (::glfwGetError(nullptr) != GLFW_NO_ERROR) return std::nullopt;  // Wayland
+  return position;
+}
+
+void Window::setPosition(glm::ivec2 position) { ::glfwSetWindowPos(handle_, position.x, position.y); }
+
 bool Window::shouldClose() const { return ::glfwWindowShouldClose(handle_) == GLFW_TRUE; }
 bool Window::minimized() const { return ::glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) == GLFW_TRUE; }
 
-std::vector<InputEvent> Window::waitForEvents(double seconds) {
-  if (seconds > 0)
+std::vector<InputEvent> Window::waitForEvents(double seconds, bool holdsKeys) {
+  const bool hasInput = !waiting_.empty() && !(holdsKeys && waiting_.front().isKey);
+  if (seconds > 0 && !hasInput)
     ::glfwWaitEventsTimeout(seconds);
   else
     ::glfwPollEvents();
+  while (!waiting_.empty() && !(holdsKeys && waiting_.front().isKey)) {
+    const Waiting input = std::move(waiting_.front());
+    waiting_.pop_front();
+    input.deliver();
+    if (input.endsFrame) break;
+  }
   return std::exchange(events_, {});
 }
 

@@ -129,6 +129,27 @@ TEST_F(SessionThreadTest, RendersAndAppliesCommands) {
   EXPECT_THAT(events_, testing::Contains(HasSubstr("\"complete\":true")));
 }
 
+// As a window does that had to replace its process: nothing is rendered until a save, and then with the edits.
+TEST_F(SessionThreadTest, OpensAfterASave) {
+  const std::filesystem::path file = folder_ / "own.rt.glsl";
+  const std::string text = "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(0.25)); }\n";
+  writeFile(file, text);
+  SessionRequest own = request();
+  own.program = file.string();
+  thread_->openAfterSave(own, {R"({"do":"exposure","stops":2})", R"({"do":"nothing"})"}, "it did not end",
+                         {{Severity::error, file.string(), 0, 0, "HANG", "it did not end"}});
+  const auto failed = waitFor([](const Snapshot& s) { return s.phase == Snapshot::Phase::failed; });
+  EXPECT_EQ(failed->error, "it did not end");
+  EXPECT_TRUE(failed->reopensAfterSave);
+  EXPECT_EQ(failed->diagnostics.size(), 1u);
+  EXPECT_FALSE(thread_->savedWhileBlocked());
+  writeFile(file, text + "\n");
+  const auto opened = waitForImage();
+  EXPECT_FLOAT_EQ(middle(*opened).r, 0.25f);
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "nothing")) << "a command that fails is a message";
+  EXPECT_EQ(waitFor([](const Snapshot& s) { return s.state.exposure == 2.0; })->undoName, "exposure");
+}
+
 TEST_F(SessionThreadTest, PicksWithoutMovingTheCamera) {
   thread_->open(request());
   waitForImage();

@@ -50,6 +50,27 @@ TEST(ViewerDisplay, MapsTonesWithExposure) {
   EXPECT_FALSE(display.error);
 }
 
+TEST(ViewerDisplay, MarksPixelsThatAreNotFinite) {
+  const io::Image image =
+      makeImage(3, 2, {vec4(0.5f), {NAN, 0, 0, 1}, vec4(0.0f), {0, INFINITY, 0, 1}, vec4(1.0f), {1, 1, 1, NAN}});
+  DisplaySettings settings;
+  const Display display = makeDisplay(image, nullptr, settings);
+  EXPECT_EQ(display.histogram.notFinitePixels, 2u);
+  EXPECT_EQ(display.notFinite, (std::vector<uvec2>{{1, 0}, {0, 1}}));
+  const std::vector<int> magenta{255, 0, 255, 255};
+  EXPECT_EQ(pixelOf(display.image, 1), magenta);
+  EXPECT_EQ(pixelOf(display.image, 3), magenta);
+  EXPECT_NE(pixelOf(display.image, 2), magenta) << "black is a color";
+  settings.marksNotFinite = false;
+  EXPECT_NE(pixelOf(makeDisplay(image, nullptr, settings).image, 1), magenta);
+  settings.marksNotFinite = true;
+  settings.compare = CompareMode::split;
+  const io::Image reference = makeImage(6, 1, std::vector<vec4>(6, vec4(1.0f)));
+  const Display split = makeDisplay(image, &reference, settings);
+  EXPECT_EQ(pixelOf(split.image, 1), magenta);
+  EXPECT_EQ(split.referenceSize, uvec2(6, 1)) << "before it was scaled";
+}
+
 TEST(ViewerDisplay, ShowsAChannelInFalseColor) {
   const io::Image image = makeImage(2, 1, {{0.5f, 2.0f, 0.0f, 1.0f}, {NAN, 0.0f, 0.0f, 1.0f}});
   DisplaySettings settings;

@@ -56,6 +56,21 @@ TEST(ReproducingCommand, IsARunOfAProgramOnItsOwnScene) {
             "quintet run pathtracer a.glb -o image.png --output albedo --frame 7 --size 640x480 --spp 16");
 }
 
+// What a new process gets after a hang.
+TEST(ViewArguments, OpenTheSceneAgain) {
+  Snapshot snapshot = snapshotOf("a.glb", "broken.rt.glsl");
+  snapshot.state.assignments = {"depth=3"};
+  EXPECT_EQ(viewArguments(snapshot, /*fixedSize=*/false),
+            (std::vector<std::string>{"a.glb", "--program", "broken.rt.glsl", "--spp", "16", "--set", "depth=3"}));
+  EXPECT_EQ(viewArguments(snapshot, /*fixedSize=*/true)[3], "--size");
+  snapshot.program = nullptr;  // it was never shown
+  auto request = std::make_shared<job::interactive::SessionRequest>();
+  request->program = "other.rt.glsl";
+  request->render.limits.samples = 8;
+  snapshot.request = request;
+  EXPECT_EQ(viewArguments(snapshot, false), (std::vector<std::string>{"--program", "other.rt.glsl", "--spp", "8"}));
+}
+
 TEST(ReproducingCommand, HasAllOptionsOfTheState) {
   Snapshot snapshot = snapshotOf("a.glb", "pathtracer");
   auto request = *snapshot.request;
