@@ -19,6 +19,9 @@
 #ifdef QUINTET_PRINT
 #include "print.glsl"
 #endif
+#ifdef QUINTET_VALUES
+#include "values.glsl"
+#endif
 #ifdef QUINTET_HEAT
 #include "heat.glsl"
 #endif
