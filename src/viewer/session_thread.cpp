@@ -136,7 +136,7 @@ bool SessionThread::savedWhileBlocked() {
   const std::lock_guard lock(savesMutex_);
   if (savesWatcher_ && savesWatcher_->pending()) {
     savesWatcher_->wait(0);
-    lastSave_ = clock_.seconds();
+    lastSave_ = clock_.seconds() - savesWatcher_->secondsSinceChange();
   }
   return lastSave_ > lastSign_ && blockedSeconds() > kBlockedSeconds;
 }

@@ -475,7 +475,6 @@ TEST_F(WindowTest, OpensTheProgramAgainAfterAHang) {
   program.insert(program.find("/**** COMMON END"),
                  "float endless(float x) { while (x < 2.0) x = fract(x + 0.37); return x; }\n");
   writeFile(folder_ / "flat.rt.glsl", program);
-  viewer.waitFor("reloaded");
   viewer.control("Waiting");
   viewer.control("Stop");
   imageColor();  // a screenshot
