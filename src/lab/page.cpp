@@ -20,8 +20,8 @@ constexpr std::string_view kMissingPage = R"(<!doctype html>
 <title>Quintet lab</title>
 <body>
 <h1>The page of the lab is not built</h1>
-<p>This program was built without <code>web/dist</code>. To build the page, install Node.js 18 or later and npm, then run
-these commands in the folder of Quintet:</p>
+<p>When this program was built, Node.js 18 or npm was missing, or npm could not download the packages of the page. To build
+it, run these commands in the folder of Quintet, with a network:</p>
 <pre>bash scripts/setup.sh page
 cmake --preset release
 cmake --build --preset release</pre>

@@ -7,7 +7,7 @@ import path from "node:path";
 
 const packages = path.join(process.env.WEB, "node_modules/.package-lock.json");
 if (!existsSync(packages)) {
-  console.log(`skipped: ${packages} does not exist; run 'npm ci' in ${process.env.WEB}`);
+  console.log(`skipped: ${packages} does not exist; build the target quintet_lab_server with a network`);
   process.exit(77);
 }
 const isBuild = !process.argv[2].endsWith(".test.mjs");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds the page: dist/index.html, dist/lab.js, dist/lab.css. `--outdir FOLDER` writes elsewhere, `--watch` builds again
-// after each save. The table of the shader library is generated from the headers and their documentation.
+// after each save. The environment variable QUINTET_SOURCE names the repository if the script is not in it. The table of the shader library is generated from the headers and their documentation.
 import * as esbuild from "esbuild";
 import { copyFile, mkdir, readFile, rename, writeFile } from "node:fs/promises";
 import { gzipSync } from "node:zlib";
@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 import { libraryTable } from "./library_table.mjs";
 
 const web = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
-const root = path.dirname(web);
+const root = process.env.QUINTET_SOURCE ?? path.dirname(web);  // the repository; the build works in a copy of web/
 const args = process.argv.slice(2);
 const outdirIndex = args.indexOf("--outdir");
 const outdir = outdirIndex >= 0 ? path.resolve(args[outdirIndex + 1]) : path.join(web, "dist");

@@ -9,9 +9,10 @@ import { fileURLToPath } from "node:url";
 import { libraryTable } from "./library_table.mjs";
 
 const web = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
+const root = process.env.QUINTET_SOURCE ?? path.dirname(web);  // the repository; the build works in a copy of web/
 const folder = await mkdtemp(path.join(tmpdir(), "quintet-lab-test-"));
 const tests = (await readdir(path.join(web, "test"))).filter((name) => name.endsWith(".test.ts"));
-const table = await libraryTable(path.dirname(web));
+const table = await libraryTable(root);
 await esbuild.build({
   entryPoints: tests.map((name) => path.join(web, "test", name)),
   bundle: true,
@@ -21,7 +22,7 @@ await esbuild.build({
   platform: "node",
   target: "node18",
   logLevel: "warning",
-  define: { REPOSITORY: JSON.stringify(path.dirname(web)) },
+  define: { REPOSITORY: JSON.stringify(root) },
   plugins: [
     {
       name: "library",
