@@ -2,6 +2,7 @@
 # Copies the page's sources from SOURCE to WEB, builds the page there into the folder OUT, and then writes STAMP. If npm
 # cannot install the packages, for example without a network, OUT stays empty, the build continues, and the server shows
 # what is missing. STAMP is then missing, too, so that the next build tries again.
+cmake_minimum_required(VERSION 3.25)
 file(GLOB parts RELATIVE ${SOURCE} ${SOURCE}/*)
 list(REMOVE_ITEM parts node_modules dist .gitignore)
 list(APPEND parts .npmrc)

@@ -26,3 +26,4 @@ add_custom_command(
           ${CMAKE_CURRENT_LIST_DIR}/build_page.cmake
   COMMENT "Building the page of the lab"
   VERBATIM)
+add_custom_target(quintet_page DEPENDS ${QUINTET_PAGE_STAMP})

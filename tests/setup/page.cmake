@@ -2,6 +2,7 @@
 # The build of the lab's page (apps/lab/build_page.cmake) with a script in place of npm: a failed 'npm ci' is tried again, and
 # nothing is written into the source tree.
 #   cmake -DSOURCE=… -DBUILD=… -P page.cmake
+cmake_minimum_required(VERSION 3.25)
 set(work ${BUILD}/tests/page-test)
 file(REMOVE_RECURSE ${work})
 file(MAKE_DIRECTORY ${work}/source/web/src ${work}/source/web/build ${work}/source/web/node_modules)

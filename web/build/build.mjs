@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the page: dist/index.html, dist/lab.js, dist/lab.css. `--outdir FOLDER` writes elsewhere, `--watch` builds again
+// Builds the page: dist/index.html, dist/lab.js, dist/lab.css, dist/licenses.txt. `--outdir FOLDER` writes elsewhere, `--watch` builds again
 // after each save. The environment variable QUINTET_SOURCE names the repository if the script is not in it. The table of the shader library is generated from the headers and their documentation.
 import * as esbuild from "esbuild";
 import { copyFile, mkdir, readFile, rename, writeFile } from "node:fs/promises";
@@ -7,6 +7,7 @@ import { gzipSync } from "node:zlib";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { libraryTable } from "./library_table.mjs";
+import { licensesOf } from "./licenses.mjs";
 
 const web = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
 const root = process.env.QUINTET_SOURCE ?? path.dirname(web);  // the repository; the build works in a copy of web/
@@ -51,7 +52,8 @@ if (args.includes("--watch")) {
   const context = await esbuild.context(options);
   await context.watch();
 } else {
-  await esbuild.build(options);
+  const { metafile } = await esbuild.build({ ...options, metafile: true, absWorkingDir: web });
+  await writeFile(path.join(outdir, "licenses.txt"), await licensesOf(Object.keys(metafile.inputs), web));
   const size = gzipSync(await readFile(path.join(outdir, "lab.js")), { level: 9 }).length;
   if (size > kBudget) {
     console.error(`lab.js: ${size} bytes after gzip exceed the limit of ${kBudget}`);

@@ -56,6 +56,7 @@ int compareCommand(Arguments);
 int benchCommand(Arguments);
 int viewCommand(Arguments);
 int labCommand(Arguments);
+int licensesCommand(Arguments);
 int helpCommand(Arguments);
 
 OptionTable renderOptions();
@@ -75,6 +76,7 @@ OptionTable compareOptions();
 OptionTable benchOptions();
 OptionTable viewOptions();
 OptionTable labOptions();
+OptionTable licensesOptions();
 OptionTable helpOptions();
 
 }  // namespace quintet::cli

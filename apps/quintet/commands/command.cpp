@@ -34,6 +34,8 @@ std::span<const Command> commands() {
       Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
       Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
       Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions, true},
+      Command{"licenses", "print the licenses of Quintet and of the code that it contains", licensesCommand,
+              licensesOptions},
       Command{"help", "print the help of a command", helpCommand, helpOptions},
   };
   return kCommands;
