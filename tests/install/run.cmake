@@ -14,11 +14,12 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
-foreach(file IN ITEMS LICENSE README.md docs/README.md docs/cli.md docs/diagnostics/Q101.md docs/images/demo.png)
+foreach(file IN ITEMS LICENSE README.md CONTRIBUTING.md THIRD-PARTY-NOTICES.txt programs/pathtracer/program.toml docs/README.md docs/cli.md docs/diagnostics/Q101.md docs/images/demo.png)
   if(NOT EXISTS ${work}/prefix/share/doc/quintet/${file})
     message(FATAL_ERROR "not installed: share/doc/quintet/${file}")
   endif()
 endforeach()
+run(bash ${SOURCE}/tests/style/links ${work}/prefix/share/doc/quintet)
 # The manifest of the layer names the library relative to itself.
 file(GLOB manifest ${work}/prefix/share/vulkan/explicit_layer.d/VkLayer_quintet_link_check.json)
 file(READ "${manifest}" text)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+# Installs the documentation of SOURCE into the folder DESTINATION, with the programs, shaders, scenes and examples that its
+# pages show. The links between them are relative, so the folders stay as they are. A link to a file that is not installed,
+# such as a source of Quintet, becomes its text. WORK: a folder for the changed pages.
+#   cmake -DSOURCE=… -DWORK=… -DDESTINATION=… -P install_docs.cmake
+cmake_minimum_required(VERSION 3.25)
+
+# Sets OUT to TEXT in which [label](TARGET) is replaced by its label.
+function(unlink_target OUT TEXT TARGET)
+  set(rest "${TEXT}")
+  set(result)
+  while(TRUE)
+    string(FIND "${rest}" "](${TARGET})" end)
+    if(end EQUAL -1)
+      break()
+    endif()
+    string(SUBSTRING "${rest}" 0 ${end} before)
+    string(FIND "${before}" "[" begin REVERSE)
+    string(LENGTH "](${TARGET})" length)
+    math(EXPR after "${end} + ${length}")
+    math(EXPR label "${begin} + 1")
+    string(SUBSTRING "${before}" 0 ${begin} head)
+    string(SUBSTRING "${before}" ${label} -1 name)
+    string(APPEND result "${head}${name}")
+    string(SUBSTRING "${rest}" ${after} -1 rest)
+  endwhile()
+  set(${OUT} "${result}${rest}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+foreach(part IN ITEMS README.md LICENSE CHANGELOG.md CONTRIBUTING.md docs examples programs)
+  file(COPY ${SOURCE}/${part} DESTINATION ${WORK})
+endforeach()
+file(COPY ${SOURCE}/shaders/quintet DESTINATION ${WORK}/shaders)
+
+file(GLOB_RECURSE pages ${WORK}/*.md)
+foreach(page IN LISTS pages)
+  file(READ ${page} text)
+  cmake_path(GET page PARENT_PATH folder)
+  string(REGEX MATCHALL "\\([^() ;\n]+\\)" targets "${text}")
+  list(REMOVE_DUPLICATES targets)
+  set(changed "${text}")
+  foreach(target IN LISTS targets)
+    string(REGEX REPLACE "^\\((.*)\\)$" "\\1" target "${target}")
+    string(REGEX REPLACE "#.*" "" file "${target}")
+    if(NOT file STREQUAL "" AND NOT target MATCHES "://|^mailto:" AND NOT EXISTS ${folder}/${file})
+      unlink_target(changed "${changed}" "${target}")
+    endif()
+  endforeach()
+  if(NOT changed STREQUAL text)
+    file(WRITE ${page} "${changed}")
+  endif()
+endforeach()
+
+file(GLOB parts ${WORK}/*)
+file(INSTALL ${parts} DESTINATION ${DESTINATION})
