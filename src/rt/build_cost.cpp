@@ -106,7 +106,8 @@ class BinnedSplitter {
         tryAxis(node, centers, axis, best);
     if (best.bin == 0) return node.size() / 2;
     const auto isLeft = [&](std::uint32_t k) { return binOf(bounds_[k], centers, best.axis) < best.bin; };
-    const auto middle = std::ranges::partition(node, isLeft).begin();
+    // Not std::ranges::partition: Clang 14 does not compile the subranges of libstdc++ 12.
+    const auto middle = std::partition(node.begin(), node.end(), isLeft);
     return static_cast<std::size_t>(middle - node.begin());
   }
 
