@@ -2,6 +2,10 @@
 // `explain-pixel`: text, JSON, differences, and errors.
 #include <gmock/gmock.h>
 
+#include <regex>
+
+#include "base/file.h"
+#include "base/parse.h"
 #include "fixtures.h"
 #include "io/codec.h"
 
@@ -27,6 +31,31 @@ TEST_F(ExplainPixel, PrintsTheTreeAsText) {
   EXPECT_THAT(result.out, HasSubstr("\nContributions\n"));
   EXPECT_THAT(result.out, HasSubstr("\nRay 1: radiance, "));
   EXPECT_THAT(result.out, ::testing::Not(HasSubstr("The sum is not")));
+}
+
+// The page shows what the command prints, up to numbers, which depend on the driver.
+TEST_F(ExplainPixel, PrintsWhatItsPageShows) {
+  const auto withoutNumbers = [](const std::string& text) {
+    std::string result = std::regex_replace(text, std::regex("-?[0-9]+(\\.[0-9]+)?(e[-+]?[0-9]+)?"), "#");
+    return std::regex_replace(result, std::regex(" +"), " ");
+  };
+  const std::string page = readTextFile(QUINTET_SOURCE_ROOT "/docs/explain-pixel.md");
+  const std::size_t begin = page.find("    default scene: pixel 200,150");
+  ASSERT_NE(begin, page.npos);
+  std::string shown;
+  for (const std::string& line : splitText(page.substr(begin), '\n')) {
+    if (!line.empty() && !line.starts_with("    ")) break;
+    shown += line.empty() ? "\n" : line.substr(4) + "\n";
+  }
+  const RunResult result = quintet({"explain-pixel", "--pixel", "200,150", "--size", "400x300"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto comparable = [&](const std::string& text) {
+    std::vector<std::string> lines;
+    for (const std::string& line : splitText(withoutNumbers(text), '\n'))
+      if (!line.empty() && !line.starts_with("program pathtracer on ")) lines.push_back(line);
+    return lines;
+  };
+  EXPECT_EQ(comparable(result.out), comparable(shown));
 }
 
 TEST_F(ExplainPixel, PrintsJsonAndComparesWithIt) {
