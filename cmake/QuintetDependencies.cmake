@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Finds all third-party libraries; docs/design/dependencies.md states the reason for each.
+# Finds all third-party libraries; docs/design/dependencies.md states the reason for each. It is also a part of the installed
+# package if libquintet is a static library. Targets are global, for projects that add Quintet with add_subdirectory().
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL TRUE)
 find_package(PkgConfig REQUIRED)
 
 find_package(VulkanHeaders CONFIG QUIET)
@@ -14,15 +16,18 @@ find_package(OpenEXR REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)
-pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
-pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
-pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(shaderc REQUIRED IMPORTED_TARGET shaderc)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET GLOBAL spng)
+pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET GLOBAL libturbojpeg)
+pkg_check_modules(webp REQUIRED IMPORTED_TARGET GLOBAL libwebp)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET GLOBAL libzstd)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET GLOBAL libxxhash)
+pkg_check_modules(shaderc REQUIRED IMPORTED_TARGET GLOBAL shaderc)
 
 # Header-only packages without a usable CMake or pkg-config file.
 function(quintet_header_library NAME HEADER)
+  if(TARGET ${NAME})
+    return()
+  endif()
   find_path(${NAME}_INCLUDE_DIR ${HEADER} REQUIRED)
   add_library(${NAME} INTERFACE IMPORTED GLOBAL)
   target_include_directories(${NAME} SYSTEM INTERFACE ${${NAME}_INCLUDE_DIR})

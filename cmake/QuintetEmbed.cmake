@@ -7,8 +7,8 @@ function(quintet_embed TARGET SYMBOL ROOT)
   add_custom_command(
     OUTPUT ${out}
     COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DSYMBOL=${SYMBOL} -DROOT=${ROOT} "-DFILES=${ARGN}"
-            -P ${CMAKE_SOURCE_DIR}/cmake/embed_files.cmake
-    DEPENDS ${ARGN} ${CMAKE_SOURCE_DIR}/cmake/embed_files.cmake
+            -P ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
+    DEPENDS ${ARGN} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
     COMMENT "Embedding ${SYMBOL}"
     VERBATIM)
   set_source_files_properties(${out} PROPERTIES COMPILE_OPTIONS "-Wno-overlength-strings")
@@ -34,8 +34,8 @@ function(quintet_embed_folders TARGET SYMBOL ROOT)
   add_custom_command(
     OUTPUT ${out}
     COMMAND ${CMAKE_COMMAND} -DOUT=${out} -DSYMBOL=${SYMBOL} -DROOT=${ROOT} -DNAMESPACE=${ARG_NAMESPACE} "-DFOLDERS=${ARG_FOLDERS}"
-            -P ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
-    DEPENDS ${files} ${ARG_DEPENDS} ${CMAKE_SOURCE_DIR}/cmake/embed_folders.cmake
+            -P ${PROJECT_SOURCE_DIR}/cmake/embed_folders.cmake
+    DEPENDS ${files} ${ARG_DEPENDS} ${PROJECT_SOURCE_DIR}/cmake/embed_folders.cmake
     COMMENT "Embedding ${SYMBOL}"
     VERBATIM)
   # ccache does not know the files that the assembler reads.

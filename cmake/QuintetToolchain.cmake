@@ -30,7 +30,7 @@ find_program(QUINTET_CCACHE ccache)
 if(QUINTET_CCACHE)
   # Paths below the source folder are not part of the key, so different clones share objects. ccache requires
   # -fpch-preprocess and this sloppiness to cache sources with precompiled headers; no source uses time macros.
-  set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
                CCACHE_SLOPPINESS=pch_defines,time_macros ${QUINTET_CCACHE})
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   # Clang rejects a precompiled header if the time of a header has changed, even if its content has not.
@@ -39,4 +39,4 @@ if(QUINTET_CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
-find_package(Threads REQUIRED)
+find_package(Threads REQUIRED GLOBAL)
