@@ -25,7 +25,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/lab_options.h"
-#include "gpu/instance.h"
+#include "gpu/driver_environment.h"
 #include "lab/private_folder.h"
 #include "lab/sandbox.h"
 #include "lab/server.h"

@@ -19,7 +19,7 @@
 #include "cli/signals.h"
 #include "cli/supervisor.h"
 #include "commands/help.h"
-#include "gpu/instance.h"
+#include "gpu/driver_environment.h"
 #include "job/version.h"
 
 namespace quintet::cli {

@@ -22,7 +22,7 @@
 #include "cli/failure.h"
 #include "cli/values.h"
 #include "cli/view_options.h"
-#include "gpu/instance.h"
+#include "gpu/driver_environment.h"
 #include "restart.h"
 
 namespace quintet::cli {

@@ -32,6 +32,7 @@ size = [12, 12]
   scene.addLight({.type = quintet::LightType::directional, .intensity = {3, 3, 3}, .direction = {-1, -2, -1}});
   scene.setEnvironment({.radiance = {0.4f, 0.5f, 0.6f}});
 
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   quintet::Renderer renderer(device, scene, quintet::Program::load("pathtracer"), {.width = 320, .height = 200});
   for (int frame = 0; frame < 4; ++frame) {

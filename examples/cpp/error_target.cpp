@@ -35,6 +35,7 @@ int main(int argc, char** argv) try {
   const quintet::Program program = quintet::Program::load("pathtracer");
   const quintet::Scene scene = argc > 1 ? quintet::Scene::load(argv[1]) : quintet::Scene::of(program);
 
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   quintet::Renderer renderer(device, scene, program, {.width = 240, .height = 160, .adaptive = true});
   if (renderer.resume("error_target.qfilm")) std::puts("resuming");

@@ -29,6 +29,7 @@ void printEvents(const std::vector<quintet::Event>& events, int indent = 0) {
 int main(int count, char** arguments) try {
   const quintet::Program program = quintet::Program::load("pathtracer");
   const quintet::Scene scene = count > 1 ? quintet::Scene::load(arguments[1]) : quintet::Scene::of(program);
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   quintet::Renderer renderer(device, scene, program, {.width = 240, .height = 160, .plannedSamples = 64});
 

@@ -6,6 +6,7 @@
 #include <quintet/quintet.h>
 
 int main() try {
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   const auto program = quintet::Program::load("lessons/01_first_ray");
   for (const auto& diagnostic : quintet::checkProgram(program)) std::puts(diagnostic.format().c_str());

@@ -49,6 +49,7 @@ int main() try {
   scene.addLight({.intensity = {60, 55, 45}, .position = {2, 4, 3}});
   scene.setEnvironment({.radiance = {0.25f, 0.35f, 0.5f}});
 
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   quintet::Renderer renderer(
       device, scene, quintet::Program::load("pathtracer"),

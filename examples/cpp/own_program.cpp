@@ -30,6 +30,7 @@ int main() try {
   for (const quintet::Diagnostic& diagnostic : quintet::checkProgram(program)) std::puts(diagnostic.format().c_str());
   const quintet::Scene scene = quintet::Scene::of(program);  // the built-in one
 
+  quintet::prepareDrivers();  // before the process has other threads
   quintet::Device device;
   quintet::Renderer renderer(device, scene, program, {.width = 360, .height = 240});
   for (const char* bands : {"1", "8"}) {

@@ -47,6 +47,14 @@ struct DeviceInfo {
   bool usable() const { return unusableReason.empty(); }
 };
 
+// Sets environment variables of this process, and of those that it starts, that lavapipe needs: Mesa's driver for CPUs. Call it
+// at the start of main(), before the process starts threads, because setenv is not safe while other threads read the
+// environment. No other function of the library sets variables. Returns false and changes nothing if the process has more than
+// one thread. GPUs do not need it. Without it, lavapipe is slower, and it cannot be used (DeviceInfo::unusableReason) if its
+// LLVM is older than 19 and the CPU has AVX-512: its results would be wrong. A program that cannot call it can be started with
+// GALLIUM_OVERRIDE_CPU_CAPS=avx. Variables that are set keep their values; QUINTET_NO_DRIVER_WORKAROUNDS=1 disables the function.
+bool prepareDrivers();
+
 // All devices of the machine, usable or not, GPUs before CPUs; empty without a Vulkan loader or driver.
 std::vector<DeviceInfo> devices();
 
@@ -80,6 +88,7 @@ class Device {
  private:
   friend class Renderer;
   struct Impl;
+  Impl& impl() const;  // throws UsageError for an empty object
   std::unique_ptr<Impl> impl_;
 };
 

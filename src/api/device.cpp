@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/impl.h"
 #include "gpu/context.h"
-#include "gpu/instance.h"
+#include "gpu/driver_environment.h"
 
 namespace quintet {
 namespace {
@@ -14,15 +14,15 @@ DeviceInfo toPublic(const gpu::DeviceInfo& info) {
 
 }  // namespace
 
+bool prepareDrivers() { return gpu::prepareDriverEnvironment(); }
+
 std::vector<DeviceInfo> devices() {
-  gpu::prepareDriverEnvironment();
   std::vector<DeviceInfo> result;
   for (const gpu::DeviceInfo& info : gpu::Context::devices()) result.push_back(toPublic(info));
   return result;
 }
 
 Device::Device(const DeviceOptions& options) {
-  gpu::prepareDriverEnvironment();
   LogSink log;
   if (options.onWarning)
     log = [warn = options.onWarning](LogLevel level, const std::string& text) {
@@ -33,17 +33,18 @@ Device::Device(const DeviceOptions& options) {
                                                     .log = std::move(log),
                                                     .severalDevices = true,
                                                     .mixedDevices = options.mixedDevices});
-  impl_->engine.context();
+  impl().engine.context();
 }
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 Device::~Device() = default;
+Device::Impl& Device::impl() const { return requireObject(impl_, "Device"); }
 
-DeviceInfo Device::info() const { return toPublic(impl_->engine.context().info()); }
+DeviceInfo Device::info() const { return toPublic(impl().engine.context().info()); }
 std::vector<DeviceInfo> Device::infos() const {
   std::vector<DeviceInfo> result;
-  for (std::size_t i = 0; i < impl_->engine.deviceCount(); ++i)
-    result.push_back(toPublic(impl_->engine.context(i).info()));
+  for (std::size_t i = 0; i < impl().engine.deviceCount(); ++i)
+    result.push_back(toPublic(impl().engine.context(i).info()));
   return result;
 }
 std::string Device::name() const { return info().name; }

@@ -8,8 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "base/parallel.h"
 #include "gpu/device_list.h"
 #include "gpu/device_query.h"
+#include "gpu/driver_environment.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
 #include "gpu/pipeline_store.h"
@@ -115,10 +119,10 @@ bool ContextOptions::validationRequested() {
 }
 
 Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>(options)) {
-  if (!adaptDriverEnvironment(info().quirks)) return;
-  impl_->submissions.shutDown();
-  impl_.reset();  // the driver starts its threads with the instance
-  impl_ = std::make_unique<Impl>(options);
+  if (options.log && info().quirks.waitsInBuilds && lavapipeThreads() > hardwareThreads())
+    options.log(LogLevel::warning,
+                fmt::format("{}: builds of acceleration structures take long with {} threads; set LP_NUM_THREADS={}",
+                            info().name, lavapipeThreads(), hardwareThreads()));
 }
 
 Context::~Context() {
@@ -130,10 +134,7 @@ std::vector<DeviceInfo> Context::devices() {
   std::vector<DeviceInfo> result;
   try {
     const Instance instance(nullptr);
-    for (FoundDevice& device : findDevices(instance.handle())) {
-      adaptDriverEnvironment(device.info.quirks);  // for processes that this one starts
-      result.push_back(std::move(device.info));
-    }
+    for (FoundDevice& device : findDevices(instance.handle())) result.push_back(std::move(device.info));
   } catch (const NoDeviceError&) {
     result.clear();
   }

@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "base/parallel.h"
+#include "gpu/driver_environment.h"
 #include "gpu/error.h"
-#include "gpu/instance.h"
 
 namespace quintet::gpu {
 namespace {
@@ -196,6 +196,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.memoryBytes = largestDeviceHeap(device);
   info.maxBufferBytes = std::min(properties.maintenance4.maxBufferSize, properties.vulkan11.maxMemoryAllocationSize);
   info.unusableReason = unusableReason(capabilities);
+  if (info.unusableReason.empty()) info.unusableReason = wrongEnvironment(info.driver, cpuHasAvx512());
   info.limits = properties.rayTracingLimits();
   info.rayQuery = capabilities.has(VK_KHR_RAY_QUERY_EXTENSION_NAME);
   info.pipelineStatistics = capabilities.features.pipelineExecutables.pipelineExecutableInfo == VK_TRUE;

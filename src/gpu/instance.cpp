@@ -1,72 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/instance.h"
 
-#include <link.h>
-
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
 
-#include "base/parallel.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
 namespace {
-
-// ---- Environment of drivers
-
-constexpr unsigned kThreadsPerCore = 8;
-constexpr unsigned kMaxLavapipeThreads = 32;  // LP_MAX_THREADS of Mesa, which starts no more
-
-constexpr const char* kLavapipeThreads = "LP_NUM_THREADS";
-
-bool adaptsDrivers() {
-  const char* off = std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS");
-  return !off || std::string_view(off) == "0";
-}
-
-// Names of the variables that Quintet has set and the user has not, also for the processes that this one starts.
-constexpr const char* kOwnVariables = "QUINTET_DRIVER_VARIABLES";
-
-bool isOwn(const std::string& name) {
-  const char* own = std::getenv(kOwnVariables);
-  return own && (std::string(own) + " ").find(name + " ") != std::string::npos;
-}
-
-void setUnlessSet(const char* name, const std::string& value) {
-  if (std::getenv(name)) return;
-  ::setenv(name, value.c_str(), /*overwrite=*/1);
-  const char* own = std::getenv(kOwnVariables);
-  if (!isOwn(name)) ::setenv(kOwnVariables, own ? fmt::format("{} {}", own, name).c_str() : name, /*overwrite=*/1);
-}
-
-constexpr const char* kCpuCaps = "GALLIUM_OVERRIDE_CPU_CAPS";
-constexpr const char* kWithoutAvx512 = "avx";  // how Mesa names it
-constexpr int kCorrectLlvm = 19;               // the oldest version that is known to be correct for AVX-512
-
-// Permits AVX-512 if all loaded versions of LLVM are correct. Drivers are loaded when an instance is created, and lavapipe reads
-// the variable when it lists its devices.
-void allowAvx512() {
-  if (!std::getenv(kCpuCaps) || !isOwn(kCpuCaps)) return;
-  int oldest = 0;
-  const auto visit = [](dl_phdr_info* info, std::size_t, void* data) {
-    int& found = *static_cast<int*>(data);
-    const int version = info->dlpi_name ? llvmVersion(info->dlpi_name) : 0;
-    if (version > 0 && (found == 0 || version < found)) found = version;
-    return 0;
-  };
-  dl_iterate_phdr(visit, &oldest);
-  if (oldest >= kCorrectLlvm) ::unsetenv(kCpuCaps);
-}
-
-void allowAvx512Once() {
-  static std::once_flag once;
-  std::call_once(once, allowAvx512);
-}
 
 // ---- Validation messages
 
@@ -119,46 +63,6 @@ bool hasLayer(const char* name) {
 
 }  // namespace
 
-int llvmVersion(std::string_view path) {
-  const std::string_view name = path.substr(path.rfind('/') + 1);
-  const std::size_t digit = name.find_first_of("0123456789");
-  int version = 0;
-  if (name.starts_with("libLLVM") && digit != std::string_view::npos)
-    std::from_chars(name.data() + digit, name.data() + name.size(), version);
-  return version;
-}
-
-unsigned lavapipeThreads() {
-  const char* preset = std::getenv(kLavapipeThreads);
-  const long wanted = preset ? std::strtol(preset, nullptr, 0) : static_cast<long>(hardwareThreads());
-  return static_cast<unsigned>(std::clamp<long>(wanted, 0, kMaxLavapipeThreads));
-}
-
-unsigned balancingThreads(unsigned cores) {
-  return std::min(kThreadsPerCore * std::max(cores, 1u), kMaxLavapipeThreads);
-}
-
-void prepareDriverEnvironment() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    if (!adaptsDrivers()) return;
-#if defined(__x86_64__)
-    // LLVM 15 miscompiles integer code for AVX-512. Mesa interprets "avx" as "no AVX-512".
-    setUnlessSet(kCpuCaps, kWithoutAvx512);
-#endif
-    // lavapipe splits a launch into one contiguous part per thread. More parts than cores balance the load.
-    setUnlessSet(kLavapipeThreads, std::to_string(balancingThreads(hardwareThreads())));
-  });
-}
-
-bool adaptDriverEnvironment(const Quirks& quirks) {
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  const unsigned cores = hardwareThreads();
-  if (!quirks.waitsInBuilds || !isOwn(kLavapipeThreads) || lavapipeThreads() <= cores) return false;
-  return ::setenv(kLavapipeThreads, std::to_string(cores).c_str(), /*overwrite=*/1) == 0;
-}
-
 bool isFalseAlarm(std::string_view messageId, std::string_view text) {
   return std::any_of(kFalseAlarms.begin(), kFalseAlarms.end(), [&](const FalseAlarm& alarm) {
     return messageId == alarm.id && text.find(alarm.text) != std::string_view::npos;
@@ -208,7 +112,6 @@ std::vector<std::string> ValidationSink::messages() const {
 }
 
 Instance::Instance(ValidationSink* sink, std::span<const std::string> extensions) {
-  prepareDriverEnvironment();
   loadLoader();
   const std::uint32_t version = volkGetInstanceVersion();
   if (version < VK_API_VERSION_1_3)
@@ -243,7 +146,6 @@ Instance::Instance(ValidationSink* sink, std::span<const std::string> extensions
   const VkResult result = vkCreateInstance(&info, nullptr, &handle_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader found no working driver");
   check(result, "create the Vulkan instance");
-  allowAvx512Once();
   loadInstanceFunctions(handle_);
   if (sink) addMessenger(*sink);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Vulkan instance: environment variables of drivers, the loader, and the messages of the validation layers.
+// The Vulkan instance: the loader, and the messages of the validation layers.
 #ifndef QUINTET_GPU_INSTANCE_H
 #define QUINTET_GPU_INSTANCE_H
 
@@ -16,27 +16,6 @@
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {
-
-// Sets the environment variables that docs/design/quirks.md lists, once per process. Drivers read them when they are
-// loaded, so this runs before the first instance is created. Variables that the user has set keep their values, and
-// QUINTET_NO_DRIVER_WORKAROUNDS=1 disables this function. Call it before the program starts threads, because setenv is
-// not safe while other threads call getenv.
-void prepareDriverEnvironment();
-
-// Number of threads that lavapipe starts in an instance that is created now: LP_NUM_THREADS, by default one per core.
-unsigned lavapipeThreads();
-
-// Returns the version of LLVM that the file name of a library states, as in "libLLVM-15.so.1" or "libLLVM.so.19.1"; 0 for other
-// libraries.
-int llvmVersion(std::string_view path);
-
-// Returns the value of LP_NUM_THREADS that prepareDriverEnvironment sets: more than `cores`, to balance launches.
-unsigned balancingThreads(unsigned cores);
-
-// Replaces that value by the number of cores if the user has not set it and builds on the device would take too long with more threads
-// (Quirks::waitsInBuilds). Returns true if it did; existing instances keep their threads. The version of a driver is known only once
-// there is an instance.
-bool adaptDriverEnvironment(const Quirks& quirks);
 
 // Returns whether a validation layer reports this message for correct use; the list is in instance.cpp.
 bool isFalseAlarm(std::string_view messageId, std::string_view text);

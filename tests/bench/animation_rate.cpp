@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/stopwatch.h"
-#include "gpu/instance.h"
+#include "gpu/driver_environment.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/runnable_program.h"

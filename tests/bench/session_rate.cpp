@@ -21,8 +21,8 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "gpu/driver_environment.h"
 #include "gpu/image.h"
-#include "gpu/instance.h"
 #include "gpu/line_renderer.h"
 #include "gpu/timer.h"
 #include "job/interactive/light_properties.h"

@@ -30,8 +30,8 @@
 
 #include "base/error.h"
 #include "check/check.h"
+#include "gpu/driver_environment.h"
 #include "gpu/error.h"
-#include "gpu/instance.h"
 #include "job/device_limits.h"
 #include "job/runnable_program.h"
 #include "job/scene_source.h"

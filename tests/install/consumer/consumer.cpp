@@ -65,6 +65,7 @@ void errors(quintet::Device& device) {
 }  // namespace
 
 int main() try {
+  expect(quintet::prepareDrivers(), "the process has one thread");
   quintet::Device device;
   animation(device);
   errors(device);
