@@ -44,7 +44,7 @@ struct Layer {
 struct WriteOptions {
   std::vector<std::string> layers{};  // .exr: names of layers beside the image, or "all"
   bool floats = false;    // .exr: colors as 32-bit floats instead of half; all other layers are always floats
-  double exposure = 0;    // .png: stops
+  double exposure = 0;    // .png: stops, -100 to 100
   std::string toneMap{};  // .png: "linear", "aces", "agx" or "neutral"; default: neutral for colors, linear for data
   unsigned pngBits = 8;   // .png: bits per channel, 8 or 16
 };
@@ -67,7 +67,8 @@ class Film {
   // The mean of the samples, or the last frame. An empty name means the first output. Throws UsageError for an unknown name
   // and for an output that was not rendered.
   Image image(const std::string& output = {}) const;
-  Layer layer(const std::string& name) const;  // throws UsageError
+  // Also the first output under its name, as image() with the channels R, G, B and A. Throws UsageError.
+  Layer layer(const std::string& name) const;
   // How the image was made: (name, text) of scene, program, parameters, camera, device, samples, …
   std::vector<std::pair<std::string, std::string>> metadata() const;
   // Writes .png, .exr with layers, .hdr, or .qfilm (everything, for load() and merge()) in one step. Throws FileError,
@@ -77,6 +78,7 @@ class Film {
  private:
   friend class Renderer;
   struct Impl;
+  const Impl& impl() const;  // throws UsageError for an empty object
   std::shared_ptr<const Impl> impl_;
 };
 

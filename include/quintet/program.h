@@ -57,6 +57,7 @@ class Program {
   friend class Scene;
   friend std::vector<Diagnostic> checkProgram(const Program&, const Scene*);
   struct Impl;
+  const Impl& impl() const;  // throws UsageError for an empty object
   std::shared_ptr<const Impl> impl_;
 };
 

@@ -12,6 +12,7 @@
 #ifndef QUINTET_QUINTET_H
 #define QUINTET_QUINTET_H
 
+#include <quintet/cancellation.h>
 #include <quintet/device.h>
 #include <quintet/diagnostic.h>
 #include <quintet/error.h>

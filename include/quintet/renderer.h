@@ -62,6 +62,10 @@ struct Settings {
   // Bytes of host memory that a file can request while it is read: an image of `parameters`, or the checkpoint of
   // Renderer::resume(). 0 means 80 % of the machine's memory. More is a MemoryError (Remedy::raiseMemoryLimit).
   std::size_t maxMemory = 0;
+  // Asked several times per second by the thread that constructs the renderer, renders, explains or searches; may be empty. True
+  // ends the construction, and a render that loads the scene again after an edit, with CanceledError; a render then ends as if its
+  // progress function had returned false. A call of the driver, such as the compilation of a pipeline, is not interrupted.
+  std::function<bool()> canceled{};
 };
 
 // A render stops at the first limit that is reached. At least one must be set, unless Settings::batches limits the render or
@@ -82,7 +86,9 @@ struct Progress {
   double raysPerSecond = 0;                                      // 0 if unknown
   std::optional<double> error{};  // relative error, if it is estimated; empty if it is unknown
 };
-// Called several times per second from the thread that calls render(). Returning false stops after the current batch.
+// Called several times per second, between launches, from the thread that calls render(). Returning false stops the render: after
+// the current batch if that takes at most about half a second, else at once and without the samples of this batch. The function
+// can read images; it must not change the renderer, which is a UsageError. Exceptions stop the render and leave render().
 using ProgressFunction = std::function<bool(const Progress&)>;
 
 // Why a render stopped.
@@ -112,7 +118,7 @@ struct RenderReport {
 class Renderer {
  public:
   // Uploads the scene, then compiles, checks and links the program. `device` must outlive the renderer; later changes of
-  // `scene` have no effect. Throws ProgramError, UsageError, FileError, MemoryError, Error.
+  // `scene` have no effect. Throws ProgramError, UsageError, FileError, MemoryError, CanceledError, Error.
   Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings = {});
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -155,8 +161,9 @@ class Renderer {
   void setParameter(const std::string& name, const std::string& value);  // as in Settings::parameters
   void setTransform(int instance, const Transform& worldFromObject);     // of an instance without keyframes
   void setMaterial(int index, const Material& material);                 // as Scene::setMaterial()
-  void setFrame(float frame);  // of the animation; instances with keyframes move. Not for programs that accumulate
-  void restart();              // discards the samples so far
+  void setFrame(
+      float frame);  // of the animation, which the scene must have for frames after 0. Not for programs that accumulate
+  void restart();    // discards the samples so far
 
   // Writes the film to `file` (.qfilm) in one step. Throws FileError; UsageError for a program that accumulates.
   void saveCheckpoint(const std::filesystem::path& file) const;
@@ -166,6 +173,7 @@ class Renderer {
 
  private:
   struct Impl;
+  Impl& impl() const;  // throws UsageError for an empty object
   std::unique_ptr<Impl> impl_;
 };
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include <variant>
 #include <vector>
 
+#include <quintet/cancellation.h>
 #include <quintet/diagnostic.h>
 #include <quintet/error.h>
 #include <quintet/types.h>
@@ -197,6 +199,8 @@ struct LoadOptions {
   // Bytes of host memory that the file, and the files that it names, can request while they are read; 0 means 80 % of the
   // machine's memory. More is a MemoryError (Remedy::raiseMemoryLimit) before the memory is allocated.
   std::size_t maxMemory = 0;
+  // Asked several times per second by the thread that loads; true ends it with CanceledError. May be empty.
+  std::function<bool()> canceled{};
   bool allowExternal = false;  // read buffers and images of glTF files from outside of their folders
 };
 
@@ -289,7 +293,8 @@ class Scene {
   friend class Renderer;
   friend std::vector<Diagnostic> checkProgram(const Program&, const Scene*);
   struct Impl;
-  Impl& change();  // not shared with other copies
+  Impl& change();      // not shared with other copies
+  Impl& impl() const;  // throws UsageError for an empty object
   std::shared_ptr<Impl> impl_;
 };
 

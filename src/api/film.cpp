@@ -89,6 +89,8 @@ Film Film::Impl::make(job::RenderResult result, std::vector<output::Layer> layer
   return film;
 }
 
+const Film::Impl& Film::impl() const { return requireObject(impl_, "Film"); }
+
 Film Film::load(const std::filesystem::path& file, std::size_t maxMemory) { return merge({file}, maxMemory); }
 
 Film Film::merge(const std::vector<std::filesystem::path>& parts, std::size_t maxMemory) {
@@ -98,27 +100,32 @@ Film Film::merge(const std::vector<std::filesystem::path>& parts, std::size_t ma
   return Impl::make(std::move(result), std::move(layers));
 }
 
-std::uint32_t Film::width() const { return impl_->result.provenance.region.width; }
-std::uint32_t Film::height() const { return impl_->result.provenance.region.height; }
+std::uint32_t Film::width() const { return impl().result.provenance.region.width; }
+std::uint32_t Film::height() const { return impl().result.provenance.region.height; }
 
 double Film::sampleCount() const {
-  const job::RenderResult& result = impl_->result;
+  const job::RenderResult& result = impl().result;
   if (result.accumulatesFrames) return static_cast<double>(result.provenance.samples);
   return render::averageSamples(result.provenance.region, result.film->counts());
 }
 
 std::vector<std::string> Film::layers() const {
   std::vector<std::string> names;
-  for (const output::Layer& layer : impl_->layers) names.push_back(layer.name);
+  for (const output::Layer& layer : impl().layers) names.push_back(layer.name);
   return names;
 }
 
-Image Film::image(const std::string& output) const { return toImage(*impl_->result.film, output); }
+Image Film::image(const std::string& output) const { return toImage(*impl().result.film, output); }
 
 Layer Film::layer(const std::string& name) const {
-  const output::Layer selected = output::selectLayers(impl_->layers, {name}, "the film").front();
+  const std::vector<render::FilmPlane>& planes = impl().result.film->planes();
+  if (!planes.empty() && name == planes.front().name) {  // the image, under its name
+    Image color = image();
+    return {name, color.width, color.height, {"R", "G", "B", "A"}, std::move(color.pixels), {}};
+  }
+  const output::Layer selected = output::selectLayers(impl().layers, {name}, "the film").front();
   io::ExrImage channels{width(), height(), {}};
-  output::addLayer(channels, selected, impl_->result, io::ExrType::f32);
+  output::addLayer(channels, selected, impl().result, io::ExrType::f32);
   Layer layer{name, width(), height(), {}, {}, {}};
   const std::size_t count = channels.channels.size();
   const std::size_t pixels = std::size_t{layer.width} * layer.height;
@@ -130,7 +137,7 @@ Layer Film::layer(const std::string& name) const {
     for (std::size_t i = 0; i < pixels; ++i) layer.values[i * count + c] = channel.samples[i];
   }
   const bool isId = selected.source == output::Layer::Source::output &&
-                    impl_->result.film->planes()[selected.output].kind == program::OutputKind::id;
+                    impl().result.film->planes()[selected.output].kind == program::OutputKind::id;
   if (isId) {
     for (const float value : layer.values) layer.ids.push_back(static_cast<std::uint32_t>(value));
     layer.values.clear();
@@ -139,7 +146,7 @@ Layer Film::layer(const std::string& name) const {
 }
 
 std::vector<std::pair<std::string, std::string>> Film::metadata() const {
-  return job::metadataOf(impl_->result.provenance);
+  return job::metadataOf(impl().result.provenance);
 }
 
 void Film::write(const std::filesystem::path& file, const WriteOptions& options) const {
@@ -150,7 +157,7 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
   if (plan.kind == output::FileKind::png) plan.request.pngBits = options.pngBits;
   if (plan.kind == output::FileKind::exr && options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
   output::checkMergeRequest(plan.request);
-  if (plan.kind == output::FileKind::film && impl_->result.accumulatesFrames)
+  if (plan.kind == output::FileKind::film && impl().result.accumulatesFrames)
     throw UsageError(
         fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
   plan.request.exposure = options.exposure;
@@ -161,11 +168,11 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
                                    suggestion(options.toneMap, render::toneMapNames())));
   }
   plan.outputs = {0};
-  plan.layers = output::selectLayers(impl_->layers, options.layers, "the film");
+  plan.layers = output::selectLayers(impl().layers, options.layers, "the film");
   output::checkChannels(plan.layers);
   output::checkSize(plan, {width(), height()});
   job::Observer ignored;
-  output::writeOutputs(plan, impl_->result, ignored);
+  output::writeOutputs(plan, impl().result, ignored);
 }
 
 }  // namespace quintet

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <quintet/quintet.h>
 
 #include "base/math.h"
@@ -18,6 +20,13 @@
 #include "scene/model/scene.h"
 
 namespace quintet {
+
+// The object behind a handle. Throws UsageError if there is none.
+template <class Handle>
+auto& requireObject(const Handle& handle, const char* className) {
+  if (!handle) throw UsageError(fmt::format("this {} is empty: it was moved from, or never got an object", className));
+  return *handle;
+}
 
 struct Device::Impl {
   explicit Impl(job::EngineOptions options) : engine(std::move(options)) {}

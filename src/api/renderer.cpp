@@ -2,9 +2,12 @@
 // The renderer of the public API: settings to a job, limits to a run, edits to the job's edits.
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,19 +17,58 @@
 #include "base/suggestion.h"
 #include "job/pixel_explainer.h"
 #include "program/heat.h"
+#include "scene/model/texture_coordinates.h"
 
 namespace quintet {
 namespace {
 
+// A canceled render completes its batch if that takes at most so many seconds; otherwise the samples of the batch are lost.
+constexpr double kLongestStop = 0.5;
+
+// Estimates when the current batch, or frame of a program that accumulates, is complete.
+class BatchSpeed {
+ public:
+  void add(const job::Progress& p) {
+    const double size = p.countsFrames ? 1.0 : double{render::kBatchSamples};
+    if (!last_) first_ = p;
+    last_ = p;
+    left_ = std::ceil(p.samples / size - 1e-6) * size - p.samples;
+    if (p.sampleLimit) left_ = std::min(left_, static_cast<double>(*p.sampleLimit) - p.samples);
+  }
+  double secondsToTheNextBatch() const {
+    if (!last_ || left_ <= 0) return 0;
+    const double samples = last_->samples - first_.samples, seconds = last_->seconds - first_.seconds;
+    return samples > 0 ? left_ * seconds / samples : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  job::Progress first_;
+  std::optional<job::Progress> last_;
+  double left_ = 0;  // samples
+};
+
 // Passes progress on, and collects warnings.
 class ApiObserver : public job::Observer {
  public:
-  explicit ApiObserver(const ProgressFunction* function = nullptr) : function_(function) {}
+  explicit ApiObserver(std::function<bool()> canceled, const ProgressFunction* function = nullptr)
+      : function_(function), canceled_(std::move(canceled)) {}
 
   void progress(const job::Progress& p) override {
-    if (!function_ || !*function_ || stop_) return;
-    const std::optional<double> error = p.error && std::isfinite(*p.error) ? p.error : std::nullopt;
-    stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, error});
+    if (stop_) return;
+    batchSpeed_.add(p);
+    try {
+      const std::optional<double> error = p.error && std::isfinite(*p.error) ? p.error : std::nullopt;
+      if (function_ && *function_)
+        stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, error});
+      if (!stop_) stop_ = cancelsPreparation();
+    } catch (...) {  // thrown again when the batch has ended
+      failure_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+  bool cancelsPreparation() override { return canceled_ && canceled_(); }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
   }
   void printed(const job::Printed& prints) override {
     prints_.lines.insert(prints_.lines.end(), prints.lines.begin(), prints.lines.end());
@@ -34,7 +76,11 @@ class ApiObserver : public job::Observer {
   }
   const job::Printed& prints() const { return prints_; }
   bool showsError() const override { return false; }
-  job::StopRequest stopRequested() override { return stop_ ? job::StopRequest::finish : job::StopRequest::none; }
+  // The current batch is completed if that takes a short time.
+  job::StopRequest stopRequested() override {
+    if (!stop_) return job::StopRequest::none;
+    return batchSpeed_.secondsToTheNextBatch() > kLongestStop ? job::StopRequest::abandon : job::StopRequest::finish;
+  }
   void warning(const std::string& text) override {  // from any thread
     const std::lock_guard lock(mutex_);
     warnings_.push_back(text);
@@ -46,6 +92,9 @@ class ApiObserver : public job::Observer {
 
  private:
   const ProgressFunction* function_;
+  std::function<bool()> canceled_;
+  BatchSpeed batchSpeed_;
+  std::exception_ptr failure_;
   bool stop_ = false;
   job::Printed prints_;
   std::mutex mutex_;
@@ -147,7 +196,7 @@ job::RenderLimits toJob(const Limits& limits, const job::RenderRequest& request)
 }
 
 StopReason reasonOf(const job::RenderResult& result) {
-  if (result.interrupted) return StopReason::canceled;
+  if (result.interrupted || result.abandoned) return StopReason::canceled;
   switch (result.reached) {
     case job::ReachedLimit::samples: return StopReason::samples;
     case job::ReachedLimit::seconds: return StopReason::time;
@@ -161,13 +210,25 @@ void append(std::vector<std::string>& texts, std::vector<std::string> more) {
   texts.insert(texts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+// A call that renders is at work.
+class Rendering {
+ public:
+  explicit Rendering(bool& flag) : flag_(flag) { flag_ = true; }
+  ~Rendering() { flag_ = false; }
+  Rendering(const Rendering&) = delete;
+  Rendering& operator=(const Rendering&) = delete;
+
+ private:
+  bool& flag_;
+};
+
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(job::Engine& engineOfDevice, job::ResolvedJob resolved, std::uint64_t printLimitOfSettings,
-       job::Observer& observer)
+  Impl(job::Engine& engineOfDevice, job::ResolvedJob resolved, const Settings& settings, job::Observer& observer)
       : engine(engineOfDevice),
-        printLimit(printLimitOfSettings),
+        printLimit(settings.printLimit),
+        canceled(settings.canceled),
         layers(renderedLayers(resolved.program, resolved.request.outputs)),
         assignments(resolved.request.assignments),
         job(engine, std::move(resolved), observer) {
@@ -178,7 +239,7 @@ struct Renderer::Impl {
 
   // Brings the edits to the device. Keeps the warnings, also if this fails.
   void update() {
-    ApiObserver observer;
+    ApiObserver observer(canceled);
     try {
       job.update(observer);
     } catch (...) {
@@ -197,8 +258,20 @@ struct Renderer::Impl {
     return result;
   }
 
+  // Calls of progress functions must not change what is rendered, because the call at work counts on it.
+  job::RenderJob& idleJob() {
+    if (rendering)
+      throw UsageError(
+          "a progress function cannot change the renderer or render: let it return false, then do so after render() "
+          "has "
+          "returned");
+    return job;
+  }
+
   job::Engine& engine;
   std::uint64_t printLimit;  // Settings::printLimit
+  std::function<bool()> canceled;
+  bool rendering = false;  // a call of render() or search() is at work, and its progress function may be
   std::vector<output::Layer> layers;
   std::vector<std::string> assignments;
   std::vector<std::string> warnings;  // for the next report
@@ -206,19 +279,19 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings) {
-  ApiObserver observer;
-  program::Program withHeat = program::withHeatMaps(program.impl_->program, settings.outputs);
-  const job::RenderRequest request = toRequest(settings, scene.impl_->scene, withHeat);
-  impl_ = std::make_unique<Impl>(device.impl_->engine, job::resolve(request, std::move(withHeat)), settings.printLimit,
-                                 observer);
-  impl_->warnings = observer.takeWarnings();
+  ApiObserver observer(settings.canceled);
+  program::Program withHeat = program::withHeatMaps(program.impl().program, settings.outputs);
+  const job::RenderRequest request = toRequest(settings, scene.impl().scene, withHeat);
+  impl_ = std::make_unique<Impl>(device.impl().engine, job::resolve(request, std::move(withHeat)), settings, observer);
+  impl().warnings = observer.takeWarnings();
 }
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
+Renderer::Impl& Renderer::impl() const { return requireObject(impl_, "Renderer"); }
 
 RenderReport Renderer::render(const Limits& limits, const ProgressFunction& progress) {
-  job::RenderJob& job = impl_->job;
+  job::RenderJob& job = impl().idleJob();
   const job::RenderRequest& request = job.resolved().request;
   if (!limits.samples && !limits.seconds && !limits.error && !request.batches && !progress)
     throw UsageError("a render without limits requires a progress function, which stops it");
@@ -226,20 +299,33 @@ RenderReport Renderer::render(const Limits& limits, const ProgressFunction& prog
     throw UsageError("limits of time and error must be above 0");
   if (limits.error && job.resolved().accumulatesFrames())
     throw UsageError("the program averages its samples itself, so the error of its image is unknown");
-  ApiObserver observer(&progress);
-  const job::RenderResult result = job.run(toJob(limits, request), observer);
+  ApiObserver observer(impl().canceled, &progress);
   RenderReport report;
-  report.reason = reasonOf(result);
-  report.samples = job.sampleCount();
-  report.seconds = result.provenance.seconds;
-  report.rays = result.provenance.rays;
-  report.droppedSamples = result.provenance.droppedSamples;
-  report.error = result.provenance.error;
+  const auto complete = [&](const job::RenderResult& result) {
+    report.reason = reasonOf(result);
+    report.samples = job.sampleCount();
+    report.seconds = result.provenance.seconds;
+    report.rays = result.provenance.rays;
+    report.droppedSamples = result.provenance.droppedSamples;
+    report.error = result.provenance.error;
+    report.warnings = std::exchange(impl().warnings, {});
+    append(report.warnings, observer.takeWarnings());
+    append(report.warnings, job::resultWarnings(result));
+  };
+  {
+    const Rendering rendering(impl().rendering);
+    const job::RenderResult result = job.run(toJob(limits, request), observer);
+    if (result.abandoned) {
+      job::RenderResult before = job.result(true);
+      before.abandoned = true;
+      complete(before);
+    } else {
+      complete(result);
+    }
+  }
   report.printed = toApi(observer.prints().lines);
   report.omittedPrints = observer.prints().omitted;
-  report.warnings = std::exchange(impl_->warnings, {});
-  append(report.warnings, observer.takeWarnings());
-  append(report.warnings, job::resultWarnings(result));
+  observer.rethrow();
   return report;
 }
 
@@ -247,26 +333,27 @@ RenderReport Renderer::render(std::uint32_t count) {
   return render({.samples = static_cast<std::uint64_t>(std::llround(sampleCount())) + count});
 }
 
-double Renderer::sampleCount() const { return impl_->job.sampleCount(); }
-std::vector<Diagnostic> Renderer::diagnostics() const { return impl_->job.diagnostics(); }
-Image Renderer::image(const std::string& output) const { return toImage(*impl_->job.film(), output); }
+double Renderer::sampleCount() const { return impl().job.sampleCount(); }
+std::vector<Diagnostic> Renderer::diagnostics() const { return impl().job.diagnostics(); }
+Image Renderer::image(const std::string& output) const { return toImage(*impl().job.film(), output); }
 
 Film Renderer::film() const {
-  job::RenderResult result = impl_->job.result(true);
+  job::RenderResult result = impl().job.result(true);
   result.film = job::viewOf(result.film->state(), result.provenance.transparent);
-  return Film::Impl::make(std::move(result), impl_->layers);
+  return Film::Impl::make(std::move(result), impl().layers);
 }
 
 Explanation Renderer::explain(std::uint32_t x, std::uint32_t y, std::uint32_t sample) {
-  impl_->update();
-  ApiObserver observer;
-  job::RenderRequest request = impl_->job.resolved().request;
+  impl().idleJob();
+  impl().update();
+  ApiObserver observer(impl().canceled);
+  job::RenderRequest request = impl().job.resolved().request;
   request.region = {};
   request.batches.reset();
-  request.print = job::PrintRequest{.pixels = {x, y, 1, 1}, .limit = impl_->printLimit};
-  request = job::requestForPixel(std::move(request), impl_->job.resolved().program, {x, y});
-  const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
-  Explanation result = toApi(job::PixelExplainer(impl_->engine, *job).explain({x, y}, sample, observer));
+  request.print = job::PrintRequest{.pixels = {x, y, 1, 1}, .limit = impl().printLimit};
+  request = job::requestForPixel(std::move(request), impl().job.resolved().program, {x, y});
+  const std::unique_ptr<job::RenderJob> job = impl().makeJobOfSameScene(std::move(request), observer);
+  Explanation result = toApi(job::PixelExplainer(impl().engine, *job).explain({x, y}, sample, observer));
   result.printed = toApi(observer.prints().lines);
   result.omittedPrints = observer.prints().omitted;
   return result;
@@ -275,46 +362,54 @@ Explanation Renderer::explain(std::uint32_t x, std::uint32_t y, std::uint32_t sa
 SearchReport Renderer::search(const SearchSettings& settings, const ProgressFunction& progress) {
   if (!(settings.threshold > 0.0f && std::isfinite(settings.threshold)))
     throw UsageError(fmt::format("the threshold {} of fireflies must be above 0", settings.threshold));
-  impl_->update();
-  ApiObserver observer(&progress);
-  job::RenderRequest request = impl_->job.resolved().request;
+  impl().idleJob();
+  impl().update();
+  ApiObserver observer(impl().canceled, &progress);
+  job::RenderRequest request = impl().job.resolved().request;
   request.batches.reset();
   request.print.reset();
-  const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
+  const std::unique_ptr<job::RenderJob> job = impl().makeJobOfSameScene(std::move(request), observer);
   const bool fireflies = settings.fireflies && !job->resolved().accumulatesFrames();
   const job::SearchOptions options{settings.notFinite, fireflies, settings.threshold, settings.limit, settings.samples};
-  return toApi(job::searchSamples(impl_->engine, *job, options, observer));
+  const Rendering rendering(impl().rendering);
+  SearchReport report = toApi(job::searchSamples(impl().engine, *job, options, observer));
+  observer.rethrow();
+  return report;
 }
 
-void Renderer::setCamera(const Camera& camera) { impl_->job.setCamera(toRequest(camera)); }
+void Renderer::setCamera(const Camera& camera) { impl().idleJob().setCamera(toRequest(camera)); }
 
 void Renderer::setParameter(const std::string& name, const std::string& value) {
-  std::vector<std::string> assignments = impl_->assignments;
+  std::vector<std::string> assignments = impl().assignments;
   std::erase_if(assignments, [&](const std::string& assignment) { return assignment.starts_with(name + "="); });
   assignments.push_back(name + "=" + value);
-  impl_->job.setParameters(assignments);
-  impl_->assignments = std::move(assignments);
+  impl().idleJob().setParameters(assignments);
+  impl().assignments = std::move(assignments);
 }
 
 void Renderer::setTransform(int instance, const Transform& worldFromObject) {
   if (instance < 0) throw UsageError(fmt::format("instance {} does not exist", instance));
-  impl_->job.setTransform(static_cast<std::size_t>(instance), toGlm(worldFromObject));
+  impl().idleJob().setTransform(static_cast<std::size_t>(instance), toGlm(worldFromObject));
 }
 
 void Renderer::setMaterial(int index, const Material& material) {
   if (index < 0) throw UsageError(fmt::format("material {} does not exist", index));
-  impl_->job.setMaterial(static_cast<std::size_t>(index), toScene(material));
+  job::RenderJob& job = impl().idleJob();
+  const auto i = static_cast<std::size_t>(index);
+  const scene::Material changed = toScene(material);
+  if (i < job.hostScene().materials.size()) scene::requireCoordinates(job.hostScene(), i, changed);
+  job.setMaterial(i, changed);
 }
 
-void Renderer::setFrame(float frame) { impl_->job.setFrame(frame); }
-void Renderer::restart() { impl_->job.restart(); }
+void Renderer::setFrame(float frame) { impl().idleJob().setFrame(frame); }
+void Renderer::restart() { impl().idleJob().restart(); }
 
 void Renderer::saveCheckpoint(const std::filesystem::path& file) const { film().write(file); }
 
 bool Renderer::resume(const std::filesystem::path& file) {
-  ApiObserver observer;
-  const bool resumed = impl_->job.resume(file, observer);
-  append(impl_->warnings, observer.takeWarnings());
+  ApiObserver observer(impl().canceled);
+  const bool resumed = impl().idleJob().resume(file, observer);
+  append(impl().warnings, observer.takeWarnings());
   return resumed;
 }
 

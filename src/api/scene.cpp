@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "api/impl.h"
+#include "base/cancellation.h"
 #include "base/memory_budget.h"
 #include "base/plural.h"
 #include "io/codec.h"
@@ -17,6 +18,7 @@
 #include "scene/geometry/tangents.h"
 #include "scene/load.h"
 #include "scene/model/limits.h"
+#include "scene/model/texture_coordinates.h"
 #include "scene/model/validate.h"
 #include "scene/toml/scene_toml.h"
 
@@ -105,9 +107,9 @@ std::vector<T> copyOf(std::span<const V> values) {
   return result;
 }
 
-// "light 'sun'", or "light" without a name.
-std::string objectName(const char* kind, const std::string& name) {
-  return name.empty() ? kind : fmt::format("{} '{}'", kind, name);
+// "light 'sun'", or "light 2 of the scene in memory" without a name.
+std::string objectName(const char* kind, std::size_t index, const std::string& name) {
+  return name.empty() ? fmt::format("{} {} of the scene in memory", kind, index) : fmt::format("{} '{}'", kind, name);
 }
 
 // Of three vertices per triangle. `mesh`: for messages.
@@ -264,11 +266,12 @@ scene::Camera toScene(const Camera& camera, const std::string& name) {
 }
 
 Scene::Scene() : impl_(std::make_shared<Impl>()) {}
+Scene::Impl& Scene::impl() const { return requireObject(impl_, "Scene"); }
 
 Scene::Impl& Scene::change() {
   // Renderers and copies keep what they have.
-  if (impl_.use_count() > 1 || impl_->scene.use_count() > 1)
-    impl_ = std::make_shared<Impl>(Impl{std::make_shared<scene::Scene>(*impl_->scene)});
+  if (impl_.use_count() > 1 || impl().scene.use_count() > 1)
+    impl_ = std::make_shared<Impl>(Impl{std::make_shared<scene::Scene>(*impl().scene)});
   // use_count() is a relaxed load: what another thread read through the last other copy must precede the change.
   std::atomic_thread_fence(std::memory_order_acquire);
   return *impl_;
@@ -276,7 +279,10 @@ Scene::Impl& Scene::change() {
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
   Scene result;
+  Cancellation cancellation(options.canceled);
+  const Cancellation::Scope scope(&cancellation);
   result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, toScene(options)));
+  throwIfCanceled();
   return result;
 }
 
@@ -290,12 +296,12 @@ Scene Scene::fromToml(std::string_view text, const std::filesystem::path& folder
 Scene Scene::of(const Program& program) {
   Scene result;
   result.impl_->scene =
-      std::make_shared<scene::Scene>(job::loadScene(job::chooseSceneSource({}, program.impl_->program)));
+      std::make_shared<scene::Scene>(job::loadScene(job::chooseSceneSource({}, program.impl().program)));
   return result;
 }
 
 int Scene::addTexture(const Texture& texture) {
-  io::Image image = toIo(texture, objectName("texture", texture.name));
+  io::Image image = toIo(texture, objectName("texture", impl().scene->textures.size(), texture.name));
   scene::Scene& scene = *change().scene;
   scene.images.push_back({texture.name, std::move(image)});
   scene.textures.push_back({texture.name,
@@ -328,8 +334,9 @@ int Scene::addMesh(std::span<const Triangles> geometries, const std::string& nam
   scene::Scene& scene = *change().scene;
   scene::Mesh mesh;
   mesh.name = name;
-  for (const Triangles& triangles : geometries)
-    mesh.geometries.push_back(toGeometry(triangles, objectName("mesh", name)));
+  const std::string shown = objectName("mesh", scene.meshes.size(), name);
+  for (const Triangles& triangles : geometries) mesh.geometries.push_back(toGeometry(triangles, shown));
+  scene::requireCoordinates(mesh, shown, scene);
   const int index = append(scene, scene.meshes, std::move(mesh), scene::validateMesh);
   for (scene::Geometry& geometry : scene.meshes.back().geometries) {
     scene::repairNormals(geometry);
@@ -378,7 +385,7 @@ int Scene::addLight(const Light& light) {
   added.type = static_cast<scene::LightType>(light.type);
   added.intensity = toGlm(light.intensity);
   added.position = toGlm(light.position);
-  const std::string name = objectName("light", light.name);
+  const std::string name = objectName("light", impl().scene->lights.size(), light.name);
   const float length = glm::length(toGlm(light.direction));
   if (light.type != LightType::point && !(length > 0.0f && std::isfinite(length)))
     throw UsageError(name + ": the direction has length 0 or is not finite");
@@ -396,7 +403,7 @@ int Scene::addLight(const Light& light) {
 }
 
 int Scene::addCamera(const Camera& camera, const std::string& name) {
-  scene::Camera added = quintet::toScene(camera, objectName("camera", name));
+  scene::Camera added = quintet::toScene(camera, objectName("camera", impl().scene->cameras.size(), name));
   added.name = name;
   scene::Scene& scene = *change().scene;
   return append(scene, scene.cameras, std::move(added), scene::validateCamera);
@@ -432,14 +439,15 @@ void Scene::setEnvironment(const std::filesystem::path& file, std::size_t maxMem
 }
 
 void Scene::setMaterial(int index, const Material& material) {
-  const std::size_t i = checkedIndex(index, impl_->scene->materials, "material");
+  const std::size_t i = checkedIndex(index, impl().scene->materials, "material");
   scene::Scene& scene = *change().scene;
+  scene::requireCoordinates(scene, i, toScene(material));
   replace(scene, scene.materials[i], toScene(material), i, scene::validateMaterial);
   scene::addTangents(scene, i);
 }
 
 void Scene::setTransform(int instance, const Transform& worldFromObject) {
-  const std::size_t i = checkedIndex(instance, impl_->scene->instances, "instance");
+  const std::size_t i = checkedIndex(instance, impl().scene->instances, "instance");
   scene::Scene& scene = *change().scene;
   scene::Instance moved = scene.instances[i];
   moved.worldFromObject = toGlm(worldFromObject);
@@ -448,42 +456,42 @@ void Scene::setTransform(int instance, const Transform& worldFromObject) {
   replace(scene, scene.instances[i], std::move(moved), i, scene::validateInstance);
 }
 
-std::string Scene::name() const { return impl_->scene->name; }
-std::size_t Scene::meshCount() const { return impl_->scene->meshes.size(); }
-std::size_t Scene::materialCount() const { return impl_->scene->materials.size(); }
-std::size_t Scene::instanceCount() const { return impl_->scene->instances.size(); }
-std::size_t Scene::lightCount() const { return impl_->scene->lights.size(); }
-std::size_t Scene::cameraCount() const { return impl_->scene->cameras.size(); }
+std::string Scene::name() const { return impl().scene->name; }
+std::size_t Scene::meshCount() const { return impl().scene->meshes.size(); }
+std::size_t Scene::materialCount() const { return impl().scene->materials.size(); }
+std::size_t Scene::instanceCount() const { return impl().scene->instances.size(); }
+std::size_t Scene::lightCount() const { return impl().scene->lights.size(); }
+std::size_t Scene::cameraCount() const { return impl().scene->cameras.size(); }
 
 Material Scene::material(int index) const {
-  return toPublic(impl_->scene->materials[checkedIndex(index, impl_->scene->materials, "material")]);
+  return toPublic(impl().scene->materials[checkedIndex(index, impl().scene->materials, "material")]);
 }
 
 Transform Scene::transform(int instance) const {
-  return toPublic(impl_->scene->instances[checkedIndex(instance, impl_->scene->instances, "instance")].worldFromObject);
+  return toPublic(impl().scene->instances[checkedIndex(instance, impl().scene->instances, "instance")].worldFromObject);
 }
 
 std::optional<int> Scene::findInstance(std::string_view name) const {
-  return findByName(impl_->scene->instances, name);
+  return findByName(impl().scene->instances, name);
 }
 std::optional<int> Scene::findMaterial(std::string_view name) const {
-  return findByName(impl_->scene->materials, name);
+  return findByName(impl().scene->materials, name);
 }
 
 SceneReport Scene::report() const {
   SceneReport result;
-  for (const scene::Feature& from : impl_->scene->report.features)
+  for (const scene::Feature& from : impl().scene->report.features)
     result.features.push_back(
         {from.kind, from.name, static_cast<FeatureUse>(from.use), from.count, from.location, from.reason});
-  result.ignored = impl_->scene->report.ignored;
-  result.repaired = impl_->scene->report.repaired;
-  for (const scene::MetadataEntry& from : impl_->scene->report.metadata)
+  result.ignored = impl().scene->report.ignored;
+  result.repaired = impl().scene->report.repaired;
+  for (const scene::MetadataEntry& from : impl().scene->report.metadata)
     result.metadata.push_back({from.object, from.name, from.value});
   return result;
 }
 
 Bounds Scene::bounds() const {
-  const Bounds3 b = scene::worldBounds(*impl_->scene);
+  const Bounds3 b = scene::worldBounds(*impl().scene);
   return {fromGlm(b.min), fromGlm(b.max)};
 }
 

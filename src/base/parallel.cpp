@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/cancellation.h"
+
 namespace quintet {
 namespace {
 
@@ -25,8 +27,12 @@ class Loop {
 
   void work() noexcept {
     const bool outer = std::exchange(insideLoop, true);
+    const Cancellation::Scope scope(cancellation_);
     try {
-      for (std::size_t i; !failed_ && (i = next_.fetch_add(1)) < count_;) body_(i);
+      for (std::size_t i; !failed_ && (i = next_.fetch_add(1)) < count_;) {
+        throwIfCanceled();
+        body_(i);
+      }
     } catch (...) {
       const std::scoped_lock lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
@@ -41,6 +47,7 @@ class Loop {
  private:
   std::size_t count_;
   const std::function<void(std::size_t)>& body_;
+  Cancellation* const cancellation_ = Cancellation::current();
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> failed_{false};
   std::mutex mutex_;
@@ -57,6 +64,7 @@ unsigned hardwareThreads() {
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+  throwIfCanceled();
   if (count == 1) return body(0);  // a loop inside the body can then use all cores
   Loop loop(count, body);
   std::vector<std::jthread> helpers;

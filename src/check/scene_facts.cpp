@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scene/model/names.h"
 #include "scene/model/surface_class.h"
 
 namespace quintet::check {
@@ -30,7 +31,7 @@ int materialOf(const scene::PrimitiveSet& set) {
 
 program::SceneFacts sceneFacts(const scene::Scene& scene) {
   program::SceneFacts facts;
-  facts.name = scene.name;
+  facts.name = scene::nameForMessages(scene);
   std::vector<std::uint32_t> first;
   for (const scene::Mesh& mesh : scene.meshes) {
     first.push_back(static_cast<std::uint32_t>(facts.geometries.size()));

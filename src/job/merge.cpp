@@ -199,7 +199,8 @@ RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& ob
   Merger merger(observer, maxMemory);
   for (const std::filesystem::path& part : parts) merger.add(part);
   FilmFile& film = merger.film();
-  if (film.film.counts.ranges.empty()) throw Error("the films contain no samples");
+  if (parts.empty()) throw UsageError("a merge requires at least one film");
+  if (film.film.counts.ranges.empty()) throw FileError(parts.front(), "contains no samples");
   RenderResult result;
   result.error = render::estimateError(film.film);
   result.plan = std::move(film.plan);

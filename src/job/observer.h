@@ -105,6 +105,9 @@ class Observer {
   virtual void image(const FilmView& /*film*/) {}
 
   virtual StopRequest stopRequested() { return StopRequest::none; }
+  // Asked several times per second while a job is constructed, and while a render loads the scene again after an edit. True
+  // ends that with CanceledError, but not a call of the driver.
+  virtual bool cancelsPreparation() { return false; }
 
   // Replaces a file in one step. The default is quintet::writeFile; a command-line program also blocks signals meanwhile.
   virtual void write(const std::filesystem::path& file, std::span<const std::byte> bytes);

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::uint32_t kPrintLogWords = 1u << 20;  // 4 MiB: more than 100,000 prints in a batch
 
+}  // namespace
+
 render::Region printedPixels(const PrintRequest& request, const render::Region& rendered) {
   if (request.all) return rendered;
   const render::Region& p = request.pixels;
@@ -26,8 +28,6 @@ render::Region printedPixels(const PrintRequest& request, const render::Region& 
       fmt::format("the pixels {},{},{},{} to print are outside the rendered part of the image, {},{},{},{}", p.x, p.y,
                   p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
 }
-
-}  // namespace
 
 Printed printedLines(const render::LogContents& log, const program::PrintTable& table, const PrintNumbers& numbers,
                      std::uint64_t limit) {

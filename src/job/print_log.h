@@ -23,9 +23,12 @@ struct PrintNumbers {
 Printed printedLines(const render::LogContents& log, const program::PrintTable& table, const PrintNumbers& numbers,
                      std::uint64_t limit);
 
+// Returns the pixels of a request. `rendered`: the rendered part of the image. Throws UsageError for pixels outside of it.
+render::Region printedPixels(const PrintRequest& request, const render::Region& rendered);
+
 class PrintLog {
  public:
-  // `rendered`: the rendered part of the image. Throws UsageError if the request has pixels outside of it, and gpu errors.
+  // Throws UsageError as printedPixels() does, and gpu errors.
   PrintLog(gpu::Context& context, const PrintRequest& request, const render::Region& rendered,
            program::PrintTable table);
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/cancellation.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
@@ -127,6 +128,8 @@ RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::s
 
 void RenderJob::prepare(Observer& observer) {
   const RenderRequest& request = job_.request;
+  Cancellation cancellation([&] { return observer.cancelsPreparation(); });
+  const Cancellation::Scope scope(&cancellation);
   if (!request.checkpoint.file.empty())
     checkpoint_.emplace(request.checkpoint, observer);  // its lock fails before anything is loaded
   if (scene_ && scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program)) scene_ = nullptr;
@@ -153,10 +156,12 @@ void RenderJob::prepare(Observer& observer) {
     std::unique_ptr<EarlyPipeline> pipeline;
   };
   std::future<Compilation> compiling = std::async(std::launch::async, [&] {
+    const Cancellation::Scope compilingScope(&cancellation);
     const render::Defines scene =
         scene_ ? scene_->onDevice->defines() : render::shaderDefines(loading->features().get(), context.info().quirks);
     Compilation result;
     result.compiled = program::compile(job_.program, engine_.compiler(), render::renderDefines(scene, request.outputs));
+    throwIfCanceled();
     if (early) result.pipeline = EarlyPipeline::make(context, job_.program, result.compiled, pipelineCache);
     return result;
   });
@@ -168,7 +173,8 @@ void RenderJob::prepare(Observer& observer) {
     prepareScene(std::move(loaded), observer);
   }
   observer.stage(kCompilingStage);
-  Compilation compilation = compiling.get();
+  Compilation compilation = getUnlessCanceled(compiling);
+  throwIfCanceled();
   link(std::move(compilation.compiled), observer);
   if (request.shutter) {
     requireAnimation("a shutter would change nothing; remove it");
@@ -206,9 +212,11 @@ void RenderJob::makeScenes(PreparedScene& prepared, LoadedScene& loaded, Observe
   std::vector<std::future<std::unique_ptr<render::DeviceScene>>> uploads;
   const scene::Scene& scene = loaded.scene;
   for (std::size_t i = 0; i < deviceCount_; ++i)
-    uploads.push_back(std::async(std::launch::async, [&, &context = engine_.context(i)] {
-      return std::make_unique<render::DeviceScene>(context, scene, environment, options);
-    }));
+    uploads.push_back(
+        std::async(std::launch::async, [&, canceled = Cancellation::current(), &context = engine_.context(i)] {
+          const Cancellation::Scope scope(canceled);
+          return std::make_unique<render::DeviceScene>(context, scene, environment, options);
+        }));
   for (std::size_t i = 0; i < deviceCount_; ++i) {
     const bool isLast = i + 1 == deviceCount_;
     try {
@@ -363,6 +371,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer, Pend
   program::PrintTable table =
       addProbes(checked, engine_.compiler(), defines, requestedProbes(request, job_.program, scene.context().info()));
   std::unique_ptr<PrintLog> prints;
+  if (request.print) static_cast<void>(printedPixels(*request.print, printableRegion(settings)));
   if (request.print && table.empty()) {
     observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
   } else if (request.print) {
@@ -795,8 +804,15 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
       return !abandoned;
     });
     reportLosses(observer);
-    if (!complete || abandoned) {  // the last progress of a batch cannot cancel it
-      if (team_->isShared()) forgetSamples();
+    if (!complete || abandoned) {
+      if (team_->isShared()) {
+        forgetSamples();
+      } else {                                             // without the samples of this batch
+        if (complete) start.done = schedule.nextSample();  // the last progress of a batch cannot cancel it
+        start.plan = schedule.plan();
+        start_ = start;
+        start_.seconds = complete ? elapsed() : begin;
+      }
       RenderResult useless;
       useless.abandoned = true;
       return useless;
@@ -857,7 +873,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   for (std::uint32_t frame = nextFrame_;; ++frame) {
     if (scene_->onDevice->animated()) scene_->onDevice->setFrame(frame);
     bool abandoned = false;
-    team_->first().renderFrame(frame, [&](double fraction) {
+    const bool complete = team_->first().renderFrame(frame, [&](double fraction) {
       if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
       progress.samples = frame + fraction;
       progress.seconds = elapsed();
@@ -865,13 +881,13 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
       abandoned = observer.stopRequested() == StopRequest::abandon;
       return !abandoned;
     });
+    if (complete) nextFrame_ = frame + 1;
+    start_.seconds = elapsed();
     if (abandoned) {
       RenderResult useless;
       useless.abandoned = true;
       return useless;
     }
-    nextFrame_ = frame + 1;
-    start_.seconds = elapsed();
     observer.batch({nextFrame_, start_.seconds, std::nullopt});
     flushPrints(observer);
     showImage(observer);

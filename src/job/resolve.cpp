@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/plural.h"
 #include "render/film/film_file.h"
+#include "scene/model/names.h"
 
 namespace quintet::job {
 namespace {
@@ -118,7 +119,7 @@ ResolvedJob resolve(RenderRequest request, program::Program program) {
   checkLimits(request, program);
   checkFiles(request);
   if (request.loadedScene) {
-    job.scene.name = request.loadedScene->name;
+    job.scene.name = scene::nameForMessages(*request.loadedScene);
     job.scene.loaded = request.loadedScene;
   } else {
     job.scene = chooseSceneSource(request.scene, program, loadOptions(request, accumulates(program)));

@@ -180,6 +180,7 @@ void RenderJob::setFrame(double frame) {
   if (job_.accumulatesFrames())
     throw UsageError(fmt::format("the program '{}' counts its frames itself", job_.program.name));
   if (!std::isfinite(frame)) throw UsageError(fmt::format("frame {} is not finite", frame));
+  if (frame != 0 && scene_) requireFrames();
   frame_ = frame;
   frameOutdated_ = true;
   restart();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/cancellation.h"
 #include "base/stopwatch.h"
 #include "render/scene/albedo_tables.h"
 #include "scene/animation/animated_bounds.h"
@@ -16,6 +17,7 @@ LoadedScene load(const SceneSource& source, const RenderRequest& request,
                  std::promise<render::SceneFeatures>& features) {
   const Stopwatch total;
   LoadedScene loaded;
+  throwIfCanceled();
   scene::PendingScene pending = beginLoading(source);
   const auto chooseLight = [&](const scene::Scene& scene) {
     const Stopwatch watch;
@@ -28,6 +30,7 @@ LoadedScene load(const SceneSource& source, const RenderRequest& request,
   if (described) chooseLight(pending.scene());
   loaded.scene = std::move(pending).finish();
   if (!described) chooseLight(loaded.scene);
+  throwIfCanceled();
 
   Stopwatch watch;
   loaded.hash = scene::contentHash(loaded.scene).hex();
@@ -51,8 +54,10 @@ SceneLoading::SceneLoading(const SceneSource& source, const RenderRequest& reque
   // The default launch policy: if no thread can be started, the work is done when its result is requested.
   std::promise<render::SceneFeatures> features;
   features_ = features.get_future().share();
-  scene_ = std::async(
-      [source, request, features = std::move(features)]() mutable { return load(source, request, features); });
+  scene_ = std::async([source, request, features = std::move(features), canceled = Cancellation::current()]() mutable {
+    const Cancellation::Scope scope(canceled);
+    return load(source, request, features);
+  });
   tables_ = std::async([] { static_cast<void>(render::albedoTables()); });
 }
 

@@ -6,6 +6,7 @@
 #include <future>
 #include <string>
 
+#include "base/cancellation.h"
 #include "job/resolve.h"
 #include "job/view.h"
 #include "render/scene/scene_features.h"
@@ -26,13 +27,13 @@ struct LoadedScene {
 
 class SceneLoading {
  public:
-  // Starts two threads: the scene, and tables that do not depend on any scene.
+  // Starts two threads: the scene, which has the cancellation of this thread, and tables that do not depend on any scene.
   SceneLoading(const SceneSource& source, const RenderRequest& request);
 
   // What shaders must know of the scene, available before its images are decoded. Throws if loading failed.
   std::shared_future<render::SceneFeatures> features() const { return features_; }
-  // Waits for the scene; call it once. Throws FileError, UsageError, MemoryError.
-  LoadedScene finish() { return scene_.get(); }
+  // Waits for the scene; call it once. Throws FileError, UsageError, MemoryError, CanceledError.
+  LoadedScene finish() { return getUnlessCanceled(scene_); }
 
  private:
   std::shared_future<render::SceneFeatures> features_;

@@ -2,6 +2,7 @@
 #include "output/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -36,6 +37,9 @@ FileKind checkRequest(const OutputRequest& request) {
     throw UsageError(fmt::format("{}: the number of bits applies to PNG only", request.file.string()));
   if (request.pngBits && *request.pngBits != 8 && *request.pngBits != 16)
     throw UsageError(fmt::format("{} per channel: PNG files have 8 or 16", counted(*request.pngBits, "bit")));
+  if (request.exposure && !(std::abs(*request.exposure) <= kMaxExposure))
+    throw UsageError(
+        fmt::format("exposure {}: must be {} to {} stops", *request.exposure, -kMaxExposure, kMaxExposure));
   if (isStandardOutput(request.file)) {
     if (kind == FileKind::film) throw UsageError("standard output takes an image, not a film");
     if (request.allOutputs || request.everyFrame)

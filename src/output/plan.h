@@ -34,6 +34,9 @@ struct ExrFormat {
   io::ExrOptions options;
 };
 
+// Largest absolute value of OutputRequest::exposure; factors of 2^±100 are far outside of what images hold.
+inline constexpr double kMaxExposure = 100;
+
 struct OutputRequest {
   std::filesystem::path file;  // or standard output: isStandardOutput()
   std::string output;          // of the program; empty means the first

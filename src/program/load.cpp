@@ -144,7 +144,6 @@ std::optional<Program> findLecture(const std::string& nameOrPath) {
   const fs::path path(nameOrPath);
   if (nameOrPath.ends_with(kLectureExtension) && fs::exists(path, ignored)) return loadLecture(path);
   if (fs::is_directory(path, ignored)) return loadOnlyLecture(path);
-  if (nameOrPath.ends_with(kLectureExtension) && path.has_parent_path()) throw FileError(path, "does not exist");
   if (const fs::path file = nameOrPath + std::string(kLectureExtension); fs::is_regular_file(file, ignored))
     return loadLecture(file);
   return {};
@@ -216,6 +215,14 @@ std::map<std::string, std::string> shortNames() {
   return names;
 }
 
+// Returns whether a name that was not found is that of a file or folder rather than of a built-in program.
+bool isPath(const std::string& name) {
+  std::error_code ignored;
+  const fs::path parent = fs::path(name).parent_path();
+  return name.ends_with(kLectureExtension) || name.ends_with('/') || name.starts_with('.') ||
+         (!parent.empty() && fs::is_directory(parent, ignored));
+}
+
 [[noreturn]] void failUnknown(const std::string& name) {
   const std::map<std::string, std::string> known = shortNames();
   std::vector<std::string> candidates = builtInPrograms();
@@ -269,6 +276,7 @@ Program loadProgram(const std::string& nameOrPath) {
   const std::map<std::string, std::string> known = shortNames();
   const auto found = known.find(nameOrPath);
   if (found != known.end() && found->second != nameOrPath) return loadProgram(found->second);
+  if (isPath(nameOrPath)) throw FileError(nameOrPath, "does not exist");
   failUnknown(nameOrPath);
 }
 

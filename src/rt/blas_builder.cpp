@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/cancellation.h"
 #include "base/error.h"
 #include "base/math.h"
 #include "base/parallel.h"
@@ -439,6 +440,7 @@ std::vector<Blas> BlasBuilder::build(std::span<const BlasInput> inputs, BuildSta
   results.reserve(inputs.size());
   const Plan plan = planBatches(context_, inputs, scratchBudget_);
   for (const std::size_t length : plan.lengths) {
+    throwIfCanceled();
     const std::span<const BlasInput> part = inputs.subspan(results.size(), length);
     const std::span<const BlasOptions> options = std::span(plan.options).subspan(results.size(), length);
     const Stopwatch ordering;

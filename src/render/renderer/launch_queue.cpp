@@ -9,31 +9,19 @@
 #include <fmt/format.h>
 
 #include "base/plural.h"
-#include "render/film/film_state.h"
 
 namespace quintet::render {
 
 LaunchQueue::LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics)
     : context_(context),
       statistics_(statistics),
-      launchSeconds_(settings.launchSeconds),
       timeoutSeconds_(settings.timeoutSeconds),
       maxInFlight_(settings.launchesInFlight),
       profile_(settings.profile),
+      sizes_(context.info().software, static_cast<double>(context.info().limits.maxLaunchInvocations),
+             settings.launchSeconds),
       timers_{gpu::Timer(context, 4), gpu::Timer(context, 4)} {
   assert(maxInFlight_ >= 1 && maxInFlight_ <= kMaxLaunchesInFlight);
-}
-
-std::uint32_t LaunchQueue::rows(double width, std::uint32_t row, std::uint32_t height, std::uint32_t samples) const {
-  const auto limit = static_cast<double>(context_.info().limits.maxLaunchInvocations);
-  double rows =
-      pixelSamplesPerSecond_ > 0 ? launchSeconds_ * pixelSamplesPerSecond_ / (width * samples) : 16384.0 / width;
-  rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
-  return launchEnd(row, static_cast<std::uint32_t>(rows), height) - row;
-}
-
-bool LaunchQueue::isShort(double pixelSamples) const {
-  return pixelSamples <= 2.0 * launchSeconds_ * pixelSamplesPerSecond_;
 }
 
 void LaunchQueue::compile(const Record& trace) {
@@ -81,9 +69,7 @@ void LaunchQueue::finishOldest() {
   const double device = launch.timer->seconds(1, 2);
   if (profile_) recordTiming(launch, wall);
   statistics_.deviceSeconds += device;
-  const double rate = launch.pixelSamples / std::max(1e-6, device > 0 ? device : wall);
-  // Strips differ in cost: the rate rises slowly and falls immediately.
-  pixelSamplesPerSecond_ = pixelSamplesPerSecond_ > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond_) : 0.25 * rate;
+  sizes_.add(launch.pixelSamples, device > 0 ? device : wall);
 }
 
 void LaunchQueue::recordTiming(const InFlight& launch, double wallSeconds) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The launches of a renderer in flight. It limits how many wait on the device, chooses their size so that each takes
-// about the requested time, and measures each launch once it has finished.
+// The launches of a renderer in flight. It limits how many wait on the device, and measures each launch once it has finished,
+// which decides the sizes of the next ones (launch_sizes.h).
 #ifndef QUINTET_RENDER_RENDERER_LAUNCH_QUEUE_H
 #define QUINTET_RENDER_RENDERER_LAUNCH_QUEUE_H
 
@@ -12,6 +12,7 @@
 
 #include "base/stopwatch.h"
 #include "gpu/timer.h"
+#include "render/renderer/launch_sizes.h"
 #include "render/renderer/render_settings.h"
 
 namespace quintet::render {
@@ -43,11 +44,8 @@ class LaunchQueue {
   // firstLaunchSeconds and deviceSeconds of `statistics`, which must outlive the queue.
   LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics);
 
-  // Returns the number of rows of the next launch, which begins at `row` of `height`, so that `samples` samples of each
-  // pixel take about launchSeconds. The launch ends at `height` or at a multiple of kLaunchRows, unless it is shorter than that.
-  std::uint32_t rows(double width, std::uint32_t row, std::uint32_t height, std::uint32_t samples) const;
-  // Returns whether so many samples are known to take at most about twice launchSeconds.
-  bool isShort(double pixelSamples) const;
+  // The sizes of the next launches, as the finished ones show them.
+  LaunchSizes& sizes() { return sizes_; }
 
   using Record = std::function<void(gpu::Commands&)>;
   // Before the first launch, on devices whose drivers compile in it: a trace without rays. The limit of launches does not
@@ -86,16 +84,16 @@ class LaunchQueue {
 
   gpu::Context& context_;
   RenderStatistics& statistics_;
-  const double launchSeconds_, timeoutSeconds_;
+  const double timeoutSeconds_;
   const std::uint32_t maxInFlight_;
   const bool profile_;
+  LaunchSizes sizes_;
   std::array<gpu::Timer, kMaxLaunchesInFlight> timers_;  // used in turn
   std::deque<InFlight> inFlight_;                        // oldest first
   std::uint64_t count_ = 0;
   std::vector<LaunchTiming> timings_;
-  double lastStamp_ = 0;              // device time at which the previous launch ended
-  double pixelSamplesPerSecond_ = 0;  // measured; 0 while unknown
-  double compileSeconds_ = 0;         // of compile()
+  double lastStamp_ = 0;       // device time at which the previous launch ended
+  double compileSeconds_ = 0;  // of compile()
 };
 
 }  // namespace quintet::render

@@ -105,6 +105,8 @@ bool Renderer::storesMotion() const {
   return false;
 }
 
+double Renderer::filmPixels() const { return static_cast<double>(film_.region().width) * film_.region().height; }
+
 Renderer::Target Renderer::wholeRegion(std::uint32_t firstSample) {
   const Region& region = film_.region();
   return {region.width,
@@ -179,12 +181,13 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
   Target target = wholeRegion(index);
   target.end = [&](gpu::Commands& commands) { film_.endBatch(commands, {index, index + 1}); };
   for (std::uint32_t row = 0; row < target.height;) {
-    const std::uint32_t rows = queue_.rows(target.width, row, target.height, 1);
+    const std::uint32_t rows = queue_.sizes().rows(target.width, row, target.height, 1);
     launch(target, row, rows, {0, 1}, row == 0 ? target.begin : Record(),
            row + rows == target.height ? target.end : Record());
     row += rows;
     if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
   }
+  queue_.sizes().endPass(static_cast<double>(target.width) * target.height, filmPixels());
   statistics_.batches++;
   statistics_.samples++;
   statistics_.renderSeconds += clock.seconds();
@@ -219,19 +222,29 @@ bool Renderer::renderStrips(const Target& target, SampleRange samples, const Rec
                             const BatchProgress& progress) {
   const std::uint32_t count = samples.end - samples.begin;
   for (std::uint32_t row = 0; row < target.height;) {
-    const std::uint32_t rows = queue_.rows(target.width, row, target.height, count);
+    const std::uint32_t rows = queue_.sizes().rows(target.width, row, target.height, count);
     // If even one row takes too long, or while the rate is unknown, samples are launched one by one: the sums and their
     // order are the same, and a shader that is slow or never ends is detected soon.
-    const std::uint32_t step = queue_.isShort(static_cast<double>(rows) * target.width * count) ? count : 1;
-    for (std::uint32_t s = 0; s < count; s += step) {
+    const double pixels = static_cast<double>(rows) * target.width;
+    const bool unknown = queue_.sizes().exploring() && count > 1;
+    std::uint32_t step = !unknown && queue_.sizes().isShort(pixels * count) ? count : 1;
+    for (std::uint32_t s = 0, next = 0; s < count; s = next) {
+      next = s + step;
       const bool first = row == 0 && s == 0, last = row + rows == target.height && s + step >= count;
       const std::uint32_t sample = samples.begin + s;
       launch(target, row, rows, {sample, sample + std::min(step, count - s)}, first ? begin : Record(),
              last ? end : Record());
+      if (unknown && s == 0) {  // the other samples, now that one of them was measured
+        finishLaunches();
+        if (queue_.sizes().isShort(pixels * (count - 1), true)) step = count - 1;
+      }
+      if (progress && next < count && !progress((row + rows * static_cast<double>(next) / count) / target.height))
+        return false;
     }
     row += rows;
     if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
   }
+  queue_.sizes().endPass(static_cast<double>(target.width) * target.height, filmPixels());
   return true;
 }
 

@@ -147,6 +147,7 @@ class Renderer {
   bool storesCenters() const;
   bool storesMotion() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
+  double filmPixels() const;  // of the rendered region
   Target wholeRegion(std::uint32_t firstSample);
   // Uploads the tiles, which must stay valid until the last launch has been recorded.
   Target tileTarget(std::span<const shared::FilmTile> tiles);

@@ -54,6 +54,8 @@ std::vector<std::string> lightNames(const Scene& scene) {
   return names;
 }
 
+std::string nameForMessages(const Scene& scene) { return scene.name.empty() ? "scene in memory" : scene.name; }
+
 const char* nameOf(LightType type) {
   switch (type) {
     case LightType::point: return "point";

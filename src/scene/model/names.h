@@ -21,6 +21,9 @@ std::vector<std::string> materialNames(const Scene&);
 // By index in Scene::lights.
 std::vector<std::string> lightNames(const Scene&);
 
+// The name of the scene; "scene in memory" if it has none, because it is not from a file.
+std::string nameForMessages(const Scene&);
+
 const char* nameOf(LightType);  // as in KHR_lights_punctual: "point", "spot", "directional"
 
 }  // namespace quintet::scene
