@@ -84,6 +84,7 @@ void decodeByteBlock(BlockFormat format, const std::byte* block, std::uint8_t* r
     case BlockFormat::bc3:
       decodeColors(block + 8, false, false, rgba);
       return decodeChannel(block, false, [&](std::size_t i, float v) { rgba[4 * i + 3] = toByte(v); });
+    case BlockFormat::uastc: return decodeUastcBlock(block, rgba);
     default: return decodeBc7Block(block, rgba);
   }
 }
@@ -105,11 +106,12 @@ void decodeFloatBlock(BlockFormat format, const std::byte* block, std::size_t ch
 template <class T, class From, class Convert>
 void storeBlock(Image& image, std::uint32_t blockX, std::uint32_t blockY, const From* texels, std::size_t stride,
                 Convert convert) {
-  for (std::uint32_t y = 0; y < 4 && 4 * blockY + y < image.height; ++y)
-    for (std::uint32_t x = 0; x < 4 && 4 * blockX + x < image.width; ++x) {
-      const auto out = image.pixel<T>(4 * blockX + x, 4 * blockY + y);
-      for (std::size_t c = 0; c < image.channels; ++c) out[c] = convert(texels[stride * (4 * y + x) + c]);
-    }
+  const std::size_t channels = image.channels, width = std::min(4u, image.width - 4 * blockX);
+  for (std::uint32_t y = 0; y < 4 && 4 * blockY + y < image.height; ++y) {
+    T* out = image.pixel<T>(4 * blockX, 4 * blockY + y).data();
+    for (std::size_t x = 0; x < width; ++x, out += channels)
+      for (std::size_t c = 0; c < channels; ++c) out[c] = convert(texels[stride * (4 * y + x) + c]);
+  }
 }
 
 }  // namespace
@@ -140,9 +142,10 @@ ImageInfo blockImageInfo(BlockFormat format, std::uint32_t width, std::uint32_t 
   return info;
 }
 
-Image decodeBlocks(BlockFormat format, std::span<const std::byte> blocks, std::uint32_t width, std::uint32_t height) {
+Image decodeBlocks(BlockFormat format, std::span<const std::byte> blocks, std::uint32_t width, std::uint32_t height,
+                   std::uint32_t channels) {
   const ImageInfo info = blockImageInfo(format, width, height);
-  Image image = makeImage(width, height, info.channels, info.type,
+  Image image = makeImage(width, height, std::min(info.channels, channels), info.type,
                           info.type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb);
   const std::uint32_t columns = (width + 3) / 4, rows = (height + 3) / 4;
   const std::size_t size = bytesPerBlock(format);

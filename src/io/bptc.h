@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to src/io: what BC6H and BC7 share (Khronos Data Format Specification 1.3, chapter 20): bits of a block,
-// partitions of its texels, interpolation.
+// Private to src/io: what BC6H and BC7 share (Khronos Data Format Specification 1.3, chapter 20): bits of a block (also
+// those of UASTC), partitions of its texels, interpolation.
 #ifndef QUINTET_IO_BPTC_H
 #define QUINTET_IO_BPTC_H
 
@@ -17,16 +17,16 @@ class BlockBits {
   explicit BlockBits(const std::byte* block) {
     for (std::size_t i = 0; i < 16; ++i) words_[i / 8] |= std::to_integer<std::uint64_t>(block[i]) << (8 * (i % 8));
   }
+  // At most 32 bits.
   std::uint32_t read(std::uint32_t count) {
-    std::uint32_t value = 0;
-    for (std::uint32_t i = 0; i < count; ++i, ++at_)
-      value |= static_cast<std::uint32_t>(words_[at_ / 64] >> (at_ % 64) & 1) << i;
-    return value;
+    const std::uint64_t value = words_[0] & ((std::uint64_t{1} << count) - 1);
+    words_[0] = words_[0] >> count | words_[1] << 1 << (63 - count);
+    words_[1] >>= count;
+    return static_cast<std::uint32_t>(value);
   }
 
  private:
-  std::array<std::uint64_t, 2> words_{};
-  std::size_t at_ = 0;
+  std::array<std::uint64_t, 2> words_{};  // those that remain, the next one lowest
 };
 
 // Subset of a texel of 16, in rows, for 1 to 3 subsets.

@@ -26,9 +26,9 @@ namespace quintet::io {
 //   Radiance HDR  f32, 3 channels, in top-to-bottom orientation, divided by the EXPOSURE of the header
 //   OpenEXR       f32, 1 to 4 channels, premultiplied; the first part with Y or R, G, B, otherwise the first layer with
 //                 R, G, B, otherwise the only channel; the display window, with 0 outside the data window
-//   KTX2          u8, u16 or f32, 1, 3 or 4 channels: level 0 of a 2D image, uncompressed or BC1 to BC7, without Basis
-//                 Universal
-// Integer formats are sRGB-encoded with straight alpha, float formats are linear. Color chunks and profiles are
+//   KTX2          u8, u16 or f32, 1, 3 or 4 channels: level 0 of a 2D image, uncompressed, BC1 to BC7, or Basis Universal
+//                 (ETC1S, UASTC)
+// Integer formats are sRGB-encoded with straight alpha (unless a KTX2 file states that it is premultiplied), float formats are linear. Color chunks and profiles are
 // ignored, as glTF 2.0 (3.8.3) requires for textures; so is the Exif orientation.
 // `nameForErrors` is a path or another name of the bytes. What the header states counts in the budget before it is
 // allocated. Without a budget, 80 % of the machine's memory are the limit. Throws FileError, MemoryError.
@@ -42,9 +42,6 @@ Image readRadiance(const std::filesystem::path& file, MemoryBudget&);
 
 // Reads the header only, so corrupt pixel data is not detected. Throws FileError.
 ImageInfo probeImage(std::span<const std::byte> bytes, const std::string& nameForErrors);
-
-// Whether the bytes are a KTX2 file with Basis Universal (ETC1S or UASTC), which decodeImage() rejects.
-bool isBasisUniversal(std::span<const std::byte> bytes);
 
 // Returns the text chunks before the pixels (PNG) or the sorted string attributes (OpenEXR); empty for other formats.
 Metadata readMetadata(std::span<const std::byte> bytes, const std::string& nameForErrors);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// KTX 2.0 (Khronos, version 2.0.4): 2D images in uncompressed formats and BC1 to BC7, with Zstandard or zlib
-// supercompression. Only level 0, the whole image, is read. Basis Universal (ETC1S, UASTC) is not supported
-// (docs/design/dependencies.md).
+// KTX 2.0 (Khronos, version 2.0.4): 2D images in uncompressed formats, BC1 to BC7 and UASTC, with Zstandard or zlib
+// supercompression, and ETC1S with BasisLZ. Only level 0, the whole image, is read.
 #include <zlib.h>
 #include <zstd.h>
 
@@ -14,6 +13,7 @@
 #include <optional>
 
 #include "base/plural.h"
+#include "io/basis_lz.h"
 #include "io/block_decode.h"
 #include "io/codec.h"
 #include "io/formats.h"
@@ -104,25 +104,66 @@ struct Header {
   std::uint32_t width = 0, height = 0;
   Supercompression supercompression = Supercompression::none;
   std::uint64_t offset = 0, length = 0, size = 0;  // of level 0: in the file; once it is decompressed
+  BasisLzLayout basisLz;
+  // Channel of a decoded texel for each channel that the file states. Basis Universal stores some pairs as red and alpha.
+  std::string_view stored;
+  bool premultiplied = false;
   bool bottomUp = false;
   // Of each channel of the image: 0 to 3 for red to alpha of the file, or '0' or '1'.
   std::string swizzle = "rgba";
 };
 
-// The form of Basis Universal; null for other files. The color model is in the data format descriptor.
-const char* basisUniversalName(const Source& source) {
-  constexpr std::uint32_t kUastc = 166;
-  if (littleEndian(source, 12, 4) != 0) return nullptr;
-  if (Supercompression{static_cast<std::uint32_t>(littleEndian(source, 44, 4))} == Supercompression::basisLz)
-    return "ETC1S";
-  const std::uint64_t descriptor = littleEndian(source, 48, 4);
-  return descriptor + 13 <= source.size() && source[descriptor + 12] == kUastc ? "UASTC" : nullptr;
+// ---- Basis Universal ----
+
+// The basic block of the data format descriptor (Khronos Data Format Specification 1.4, chapter 5), as far as it is used.
+struct Descriptor {
+  std::uint32_t model = 0, samples = 0;
+  std::uint32_t channel = 0;  // of the first sample
+  bool premultiplied = false;
+};
+Descriptor readDescriptor(const Source& source) {
+  constexpr std::uint64_t kFixed = 28, kSample = 16;  // with the total size
+  const std::uint64_t at = littleEndian(source, 48, 4), length = littleEndian(source, 52, 4);
+  if (length < kFixed || at + length > source.size()) return {};
+  const auto start = static_cast<std::size_t>(at);
+  const std::uint64_t size = littleEndian(source, start + 10, 2) + 4;  // of the block
+  Descriptor descriptor{.model = source[start + 12], .premultiplied = (source[start + 15] & 1) != 0};
+  if (size < kFixed || size > length) return descriptor;
+  descriptor.samples = static_cast<std::uint32_t>((size - kFixed) / kSample);
+  if (descriptor.samples > 0) descriptor.channel = source[start + kFixed + 3] & 15u;
+  return descriptor;
 }
 
+// Names of color models.
+constexpr std::uint32_t kEtc1s = 163, kUastc = 166;
+
 [[noreturn]] void failForFormat(const Source& source, std::uint32_t format) {
-  if (const char* name = basisUniversalName(source))
-    source.fail(fmt::format("KTX2 with Basis Universal ({}) is not supported", name));
+  if (const std::uint32_t model = readDescriptor(source).model; format == 0)
+    source.fail(12, fmt::format("KTX2 with the color model {} is not supported", model));
   source.fail(fmt::format("KTX2 with the format {} (VkFormat) is not supported", format));
+}
+
+// Layout and channels of a file without VkFormat.
+void readBasisUniversal(const Source& source, Header& header) {
+  const Descriptor descriptor = readDescriptor(source);
+  const bool basisLz = header.supercompression == Supercompression::basisLz;
+  if (descriptor.model != (basisLz ? kEtc1s : kUastc)) failForFormat(source, 0);
+  if (descriptor.samples == 0) source.fail(48, "KTX2 with an invalid data format descriptor");
+  if (basisLz) {
+    constexpr std::uint32_t kRed = 3;
+    header.basisLz.twoSlices = descriptor.samples > 1;
+    if (descriptor.channel == kRed)
+      header.stored = header.basisLz.twoSlices ? "ra" : "r";
+    else
+      header.stored = header.basisLz.twoSlices ? "rgba" : "rgb";
+    header.layout = uncompressed(0, Sample::unorm8, static_cast<std::uint32_t>(header.stored.size()));
+    return;
+  }
+  header.layout = blocks(0, BlockFormat::uastc);
+  constexpr std::string_view kStored[] = {"rgb", "", "", "rgba", "r", "ra", "rg"};
+  if (descriptor.channel < std::size(kStored)) header.stored = kStored[descriptor.channel];
+  if (header.stored.empty())
+    source.fail(48, fmt::format("UASTC with the channels {} is not supported", descriptor.channel));
 }
 
 // The value of a key, without the final zero byte; empty if it does not exist or the entries are not valid.
@@ -143,9 +184,11 @@ std::string_view keyValue(const Source& source, std::string_view wanted) {
   return {};
 }
 
-std::uint32_t channelsOf(const Header& header) {
-  const ImageInfo info = blockImageInfo(header.layout.block, header.width, header.height);
-  return header.layout.block == BlockFormat::none ? header.layout.channels : info.channels;
+std::uint32_t channelsOf(const Header& header) { return static_cast<std::uint32_t>(header.stored.size()); }
+
+// Channels that must be decoded for those that are stored.
+std::uint32_t decodedChannels(const Header& header) {
+  return static_cast<std::uint32_t>(std::string_view("rgba").find(header.stored.back())) + 1;
 }
 
 // Channels of the image: without a swizzle those of the format, where red alone becomes gray and red with green gets a
@@ -186,19 +229,39 @@ Header readHeader(const Source& source) {
   Header header;
   const std::uint32_t format = u32(12);
   header.supercompression = Supercompression{u32(44)};
-  const auto layout = std::ranges::find(kLayouts, format, &Layout::format);
-  if (layout == std::end(kLayouts)) failForFormat(source, format);
-  if (header.supercompression == Supercompression::basisLz || header.supercompression > Supercompression::zlib)
+  const bool basisLz = header.supercompression == Supercompression::basisLz;
+  if (header.supercompression > Supercompression::zlib || (basisLz && format != 0))
     source.fail(44, fmt::format("KTX2 with the supercompression scheme {} is not supported", u32(44)));
   if (u32(28) != 0 || u32(32) > 1 || u32(36) != 1)
-    source.fail(28, "KTX2 with a volume, layers or cube faces is not supported; only 2D images are");
-  header.layout = *layout;
+    source.fail(28, "KTX2 with a volume, layers (as in videos) or cube faces is not supported; only 2D images are");
   header.width = u32(20), header.height = u32(24);
+  if (format == 0) {
+    readBasisUniversal(source, header);
+  } else {
+    const auto layout = std::ranges::find(kLayouts, format, &Layout::format);
+    if (layout == std::end(kLayouts)) failForFormat(source, format);
+    header.layout = *layout;
+    const bool isBlock = layout->block != BlockFormat::none;
+    header.stored = std::string_view("rgba").substr(
+        0, isBlock ? blockImageInfo(layout->block, header.width, header.height).channels : layout->channels);
+  }
   const std::string_view orientation = keyValue(source, "KTXorientation"), swizzle = keyValue(source, "KTXswizzle");
   header.bottomUp = orientation.size() > 1 && orientation[1] == 'u';
   if (swizzle.size() == 4 && swizzle.find_first_not_of("rgba01") == std::string_view::npos) header.swizzle = swizzle;
+  header.premultiplied = readDescriptor(source).premultiplied;
   source.checkSize(header.width, header.height, imageChannels(header) * bytesPerSample(imageType(header.layout)));
   header.offset = littleEndian(source, 80, 8), header.length = littleEndian(source, 88, 8);
+  if (basisLz) {
+    header.basisLz = {.globalOffset = littleEndian(source, 64, 8),
+                      .globalLength = littleEndian(source, 72, 8),
+                      .levelOffset = header.offset,
+                      .levelLength = header.length,
+                      .images = std::max(u32(40), 1u),
+                      .width = header.width,
+                      .height = header.height,
+                      .twoSlices = header.basisLz.twoSlices};
+    return header;
+  }
   header.size = littleEndian(source, 96, 8);
   if (header.size != levelSize(header))
     source.fail(96, fmt::format("KTX2 states {} for level 0; {} x {} pixels have {}", counted(header.size, "byte"),
@@ -305,19 +368,30 @@ void arrangeAny(const Header& header, Image& image, const Read& read) {
 
 bool matches(const Source& source) { return source.has(0, kIdentifier); }
 
-ImageInfo probe(const Source& source) {
-  const Header header = readHeader(source);
-  const bool compressed = header.supercompression != Supercompression::none;
-  return {
-      header.width, header.height, imageChannels(header), imageType(header.layout), {}, compressed ? header.size : 0};
+// Whether decoded blocks are the image.
+bool decodesDirectly(const Header& header) {
+  return !header.bottomUp && header.swizzle == "rgba" && decodedChannels(header) == imageChannels(header) &&
+         decodedChannels(header) == header.stored.size();
 }
 
-Image decode(const Source& source) {
+ImageInfo probe(const Source& source) {
   const Header header = readHeader(source);
+  const bool basisLz = header.supercompression == Supercompression::basisLz;
+  ImageInfo info{header.width, header.height, imageChannels(header), imageType(header.layout), {}, 0};
+  if (basisLz) info.temporaryBytes = basisLzMemory(header.basisLz);
+  if (!basisLz && header.supercompression != Supercompression::none) info.temporaryBytes = header.size;
+  if ((basisLz || header.layout.block != BlockFormat::none) && !decodesDirectly(header))
+    info.temporaryBytes +=
+        std::size_t{header.width} * header.height * decodedChannels(header) * bytesPerSample(info.type);
+  return info;
+}
+
+Image decodePixels(const Source& source, const Header& header) {
   if (header.offset > source.size() || header.length > source.size() - header.offset)
     source.fail(source.size(), "KTX2 data ends early");
-  const bool compressed = header.supercompression != Supercompression::none;
-  if (!compressed && header.length != header.size)
+  const bool basisLz = header.supercompression == Supercompression::basisLz;
+  const bool compressed = header.supercompression != Supercompression::none && !basisLz;
+  if (!compressed && !basisLz && header.length != header.size)
     source.fail(88,
                 fmt::format("KTX2 stores {} for level 0 instead of {}", counted(header.length, "byte"), header.size));
   std::span<const std::byte> level = source.bytes.subspan(header.offset, header.length);
@@ -326,30 +400,37 @@ Image decode(const Source& source) {
 
   const PixelType type = imageType(header.layout);
   const auto encoding = type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb;
-  Image image = makeImage(header.width, header.height, imageChannels(header), type, encoding);
-  if (header.layout.block == BlockFormat::none) {
+  const auto makeResult = [&] { return makeImage(header.width, header.height, imageChannels(header), type, encoding); };
+  if (header.layout.block == BlockFormat::none && !basisLz) {
+    Image image = makeResult();
     const std::uint64_t size = bytesPerTexel(header.layout);
     arrangeAny(header, image, [&](std::size_t x, std::size_t y, auto* texel) {
       readTexel(header.layout, level.data() + (y * header.width + x) * size, texel);
     });
     return image;
   }
-  Image decoded = decodeBlocks(header.layout.block, level, header.width, header.height);
-  if (!header.bottomUp && header.swizzle == "rgba" && decoded.channels == image.channels) return decoded;
+  Image decoded = basisLz
+                      ? decodeBasisLz(source, header.basisLz, decodedChannels(header))
+                      : decodeBlocks(header.layout.block, level, header.width, header.height, decodedChannels(header));
+  if (decodesDirectly(header)) return decoded;
+  Image image = makeResult();
+  std::array<std::size_t, 4> from{};  // decoded channel of each stored one
+  for (std::size_t c = 0; c < header.stored.size(); ++c) from[c] = std::string_view("rgba").find(header.stored[c]);
   arrangeAny(header, image, [&](std::uint32_t x, std::uint32_t y, auto* texel) {
-    const auto from = decoded.pixel<std::remove_pointer_t<decltype(texel)>>(x, y);
-    std::ranges::copy(from, texel);
+    const auto values = decoded.pixel<std::remove_pointer_t<decltype(texel)>>(x, y);
+    for (std::size_t c = 0; c < header.stored.size(); ++c) texel[c] = values[from[c]];
   });
   return image;
 }
 
-}  // namespace
-
-bool isBasisUniversal(std::span<const std::byte> bytes) {
-  const std::string name;
-  const Source source{bytes, name};
-  return matches(source) && source.size() >= kHeaderSize + kLevelSize && basisUniversalName(source);
+Image decode(const Source& source) {
+  const Header header = readHeader(source);
+  Image image = decodePixels(source, header);
+  image.premultiplied = header.premultiplied && image.hasAlpha();
+  return image;
 }
+
+}  // namespace
 
 const Format kKtx2{"KTX2", matches, probe, decode, nullptr};
 

@@ -43,22 +43,17 @@ FileBytes headerOf(const Document& document, const std::string& uri, const std::
   return isKtx ? bytes : document.loadUri(uri, location);
 }
 
-// Why an image cannot be used, from its header.
-struct HeaderProblem {
-  std::string text;             // empty if there is no problem
-  bool basisUniversal = false;  // a valid file, but not supported
-};
-HeaderProblem headerProblem(const Document& document, int index) {
+// Why an image cannot be used, from its header; empty if there is no problem.
+std::string headerProblem(const Document& document, int index) {
   const ImageSource& source = document.images[static_cast<std::size_t>(index)];
   const std::string location = fmt::format("/images/{}", index);
-  FileBytes loaded;
-  std::span<const std::byte> bytes;
   try {
-    if (source.bufferView == kNone) loaded = headerOf(document, source.uri, location + "/uri");
-    bytes = source.bufferView == kNone ? std::span<const std::byte>(loaded) : document.view(source.bufferView);
-    io::probeImage(bytes, location);
+    if (source.bufferView == kNone)
+      io::probeImage(headerOf(document, source.uri, location + "/uri"), location);
+    else
+      io::probeImage(document.view(source.bufferView), location);
   } catch (const FileError& error) {
-    return {error.problem(), io::isBasisUniversal(bytes)};
+    return error.problem();
   }
   return {};
 }
@@ -143,17 +138,13 @@ int TextureTable::chooseImage(int texture) {
   if (const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp)) return indexOf(*webp, "source");
   if (const tinygltf::Value* basisu = findExtension(from.extensions, kTextureBasisu)) {
     const int image = indexOf(*basisu, "source");
-    const HeaderProblem problem = headerProblem(document_, image);
-    // Without a fallback, an image that is missing or invalid is an error when it is decoded.
-    if (problem.text.empty() || (from.source == kNone && !problem.basisUniversal)) return image;
-    const std::string location = fmt::format("/textures/{}/extensions/{}", texture, kTextureBasisu);
-    if (from.source != kNone) {
-      report_.ignored.push_back(
-          fmt::format("{}: {}; replaced by the fallback /images/{}", location, problem.text, from.source));
-      return from.source;
-    }
-    problems_.emplace(texture, fmt::format("no fallback for its image: {}", problem.text));
-    return kNone;
+    // Without a fallback, an image that is missing, invalid or not supported is an error when it is decoded.
+    if (from.source == kNone) return image;
+    const std::string problem = headerProblem(document_, image);
+    if (problem.empty()) return image;
+    report_.ignored.push_back(fmt::format("/textures/{}/extensions/{}: {}; replaced by the fallback /images/{}",
+                                          texture, kTextureBasisu, problem, from.source));
+    return from.source;
   }
   if (from.source == kNone) problems_.emplace(texture, "no image in a supported format (PNG, JPEG, WebP, KTX2)");
   return from.source;

@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "io/basis_samples.h"
 #include "io/ktx2_builder.h"
 
 namespace quintet::io::test {
@@ -191,6 +192,9 @@ std::vector<Sample> allSamples() {
       {"zstd.ktx2", Ktx2{.format = 97, .width = 3, .height = 2, .scheme = 2, .level = ramp(48)}.build()},
       {"zlib.ktx2", Ktx2{.format = 145, .width = 5, .height = 4, .scheme = 3, .level = ramp(32)}.build()},
       {"swizzled.ktx2", swizzledKtx2()},
+      {"etc1s.ktx2", etc1sFile()},
+      {"etc1s_alpha.ktx2", etc1sAlphaFile()},
+      {"uastc.ktx2", uastcFile()},
   };
 }
 

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <random>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/basis_lz_builder.h"
+#include "io/basis_samples.h"
 #include "io/codec.h"
 #include "io/ktx2_builder.h"
 #include "scene/error_matcher.h"
@@ -478,33 +481,71 @@ TEST(GltfTexture, PrefersWebp) {
   EXPECT_THAT(errorOf(builder), IsErrorAt("/textures/0/extensions/EXT_texture_webp/source", "image 2"));
 }
 
-// The header of a KTX2 file with UASTC, which is not supported.
-std::vector<std::byte> uastcHeader() {
-  std::vector<std::byte> ktx2(128, std::byte{0});
-  const std::string_view identifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
-  std::memcpy(ktx2.data(), identifier.data(), identifier.size());
-  ktx2[20] = ktx2[24] = ktx2[36] = ktx2[40] = std::byte{1};
-  ktx2[48] = std::byte{104};
-  ktx2[104 + 12] = std::byte{166};
-  return ktx2;
+TEST(GltfTexture, ReadsBasisUniversal) {
+  for (const std::vector<std::byte>& file :
+       {io::test::etc1sFile(), io::test::etc1sAlphaFile(), io::test::uastcFile()}) {
+    const io::Image expected = io::decodeImage(file, "a");
+    TextureBuilder builder;
+    builder.use();
+    builder.root["images"][0] = {{"bufferView", builder.addView(file)}, {"mimeType", "image/ktx2"}};
+    builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+    builder.root["extensionsUsed"] = builder.root["extensionsRequired"] = {"KHR_texture_basisu"};
+    const scene::Scene scene = builder.load();
+    EXPECT_TRUE(scene.report.isExact());
+    EXPECT_THAT(scene.report.extensionsUsed, testing::Contains("KHR_texture_basisu"));
+    ASSERT_TRUE(scene.materials[0].baseColorTexture.used());
+    EXPECT_EQ(scene.images.at(0).image.data, expected.data);
+    // The same as a separate file. It has precedence over the fallback, which does not exist.
+    const TempFolder folder;
+    writeFile(folder / "a b.ktx2", file);
+    builder.root["images"][0] = {{"uri", "a%20b.ktx2"}};
+    builder.add("images", {{"uri", "none.png"}});
+    builder.root["textures"][0]["source"] = 1;
+    writeFile(folder / "scene.glb", builder.glb());
+    EXPECT_EQ(scene::loadGltf(folder / "scene.glb").images.at(0).image.data, expected.data);
+  }
+}
+
+// The codebooks are far behind what is read of a separate file to choose between it and its fallback.
+TEST(GltfTexture, ReadsLargeBasisUniversalInsteadOfTheFallback) {
+  std::mt19937 random(1);
+  io::test::BasisLzImage image{.width = 40, .height = 40};
+  image.fill(random, 50, 50, 1);
+  io::test::Ktx2 file = image.file(random, {0});
+  file.addKey("padding", std::string(100000, 'a'));
+  TextureBuilder builder;
+  builder.use();
+  builder.add("images", {{"uri", "a.ktx2"}});
+  builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
+  const TempFolder folder;
+  writeFile(folder / "a.ktx2", file.build());
+  writeFile(folder / "scene.glb", builder.glb());
+  const scene::Scene scene = scene::loadGltf(folder / "scene.glb");
+  EXPECT_TRUE(scene.report.isExact());
+  EXPECT_EQ(scene.images.at(0).image.width, 40u);
+}
+
+// A color model that is not supported: UASTC HDR.
+std::vector<std::byte> hdrFile() {
+  io::test::Ktx2 file{.format = 0, .level = std::vector<std::byte>(16)};
+  file.describe(167, {0});
+  return file.build();
 }
 
 TEST(GltfTexture, UsesTheFallbackOfBasisUniversal) {
   TextureBuilder builder;
   builder.use();
-  builder.add("images", {{"bufferView", builder.addView(uastcHeader())}, {"mimeType", "image/ktx2"}});
+  builder.add("images", {{"bufferView", builder.addView(hdrFile())}, {"mimeType", "image/ktx2"}});
   builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
   builder.root["extensionsRequired"] = {"KHR_texture_basisu"};
   scene::Scene scene = builder.load();
   EXPECT_TRUE(scene.materials[0].baseColorTexture.used());
   EXPECT_EQ(scene.images.at(0).name, "scene.glb: /images/0");
   EXPECT_THAT(scene.report.ignored,
-              ElementsAre(IsErrorAt("/textures/0/extensions/KHR_texture_basisu", "UASTC) is not supported; replaced")));
-  // Without a fallback, the factor remains.
+              ElementsAre(IsErrorAt("/textures/0/extensions/KHR_texture_basisu", "167 is not supported; replaced")));
+  // Without a fallback, it is an error.
   builder.root["textures"][0].erase("source");
-  scene = builder.load();
-  EXPECT_FALSE(scene.materials[0].baseColorTexture.used());
-  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "UASTC")));
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/1", "color model 167"));
   // An image that can be read has precedence.
   builder.root["textures"][0]["source"] = 1;
   builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
@@ -530,11 +571,17 @@ TEST(GltfTexture, ReadsSeparateKtx2FilesOnce) {
   writeFile(folder / "scene.glb", builder.glb());
   const scene::LoadOptions options{.maxMemory = 5u << 19};
   EXPECT_EQ(scene::loadGltf(folder / "scene.glb", options).images.at(0).image.width, 512u);
-  // Its header decides whether the fallback is used.
-  image.format = 0, image.scheme = 1;
+  // Its header decides whether a fallback is used.
+  builder.add("images", {{"uri", "b.ktx2"}});
+  builder.root["textures"][0]["source"] = 1;
+  writeFile(folder / "scene.glb", builder.glb());
+  writeFile(folder / "b.ktx2", image.build());
+  EXPECT_EQ(scene::loadGltf(folder / "scene.glb", options).report.isExact(), true);
+  image.format = 200;
   writeFile(folder / "a.ktx2", image.build());
   EXPECT_THAT(scene::loadGltf(folder / "scene.glb", options).report.ignored,
-              ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "ETC1S")));
+              ElementsAre(IsErrorAt("/textures/0/extensions/KHR_texture_basisu", "format 200")));
+  std::filesystem::remove(folder / "b.ktx2");
   std::filesystem::remove(folder / "a.ktx2");
   EXPECT_THROW(scene::loadGltf(folder / "scene.glb", options), FileError);
 }
