@@ -28,8 +28,8 @@ namespace quintet::io {
 //                 R, G, B, otherwise the only channel; the display window, with 0 outside the data window
 //   KTX2          u8, u16 or f32, 1, 3 or 4 channels: level 0 of a 2D image, uncompressed, BC1 to BC7, or Basis Universal
 //                 (ETC1S, UASTC)
-// Integer formats are sRGB-encoded with straight alpha (unless a KTX2 file states that it is premultiplied), float formats are linear. Color chunks and profiles are
-// ignored, as glTF 2.0 (3.8.3) requires for textures; so is the Exif orientation.
+// Integer formats are sRGB-encoded with straight alpha, unless a KTX2 file states that alpha is premultiplied; float formats
+// are linear. Color chunks and profiles are ignored, as glTF 2.0 (3.8.3) requires for textures; so is the Exif orientation.
 // `nameForErrors` is a path or another name of the bytes. What the header states counts in the budget before it is
 // allocated. Without a budget, 80 % of the machine's memory are the limit. Throws FileError, MemoryError.
 Image decodeImage(std::span<const std::byte> bytes, const std::string& nameForErrors);

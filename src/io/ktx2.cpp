@@ -134,7 +134,7 @@ Descriptor readDescriptor(const Source& source) {
   return descriptor;
 }
 
-// Names of color models.
+// Color models.
 constexpr std::uint32_t kEtc1s = 163, kUastc = 166;
 
 [[noreturn]] void failForFormat(const Source& source, std::uint32_t format) {
