@@ -266,7 +266,8 @@ class Scene {
   int addInstance(const Instance& instance);  // its mesh exists already
   int addLight(const Light& light);           // punctual; emissive surfaces are lights without this
   int addCamera(const Camera& camera, const std::string& name = {});  // the first one is the default of renderers
-  // A scene without lights and without an environment gets the default one. A black environment counts as one.
+  // A scene without an environment gets the default one, unless it has a punctual light, or emissive surfaces that light at
+  // least half of its surfaces. A black environment counts as one.
   void setEnvironment(const Environment& environment);
   // An equirectangular image. `maxMemory`: LoadOptions. Throws FileError, MemoryError.
   void setEnvironment(const std::filesystem::path& file, std::size_t maxMemory = 0);

@@ -92,12 +92,32 @@ std::string lossText(std::size_t device, const Error& error) {
   return fmt::format("device {} of the list was lost: {}; the others render without it", device + 1, error.what());
 }
 
+// States which environment was chosen for a scene without one, and how to choose another.
+void describeLight(const std::string& scene, scene::OwnLight light, Observer& observer) {
+  switch (light) {
+    case scene::OwnLight::none:
+      observer.note(fmt::format(
+          "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", scene));
+      break;
+    case scene::OwnLight::faint:
+      observer.note(
+          fmt::format("{}: the emissive surfaces leave most of the scene dark, using the default environment (the "
+                      "environment 'none' disables it)",
+                      scene));
+      break;
+    case scene::OwnLight::emission:
+      observer.note(fmt::format(
+          "{}: emissive surfaces light the scene, using no environment (the environment 'default' adds one)", scene));
+      break;
+    case scene::OwnLight::punctual: break;
+  }
+}
+
 void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& observer) {
   const std::string& name = job.scene.name;
   // Lecture programs bring their own lights.
-  if (loaded.environment.isFallback && !job.accumulatesFrames())
-    observer.note(fmt::format(
-        "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
+  if (loaded.environment.decidedBy && !job.accumulatesFrames())
+    describeLight(name, *loaded.environment.decidedBy, observer);
   if (!loaded.environment.repair.empty()) observer.warning(loaded.environment.repair);
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;

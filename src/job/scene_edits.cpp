@@ -233,7 +233,7 @@ void RenderJob::setEnvironment(const EnvironmentRequest& environment) {
 const EnvironmentRequest& RenderJob::keepEnvironment() {
   std::string& source = job_.request.environment.source;
   if (source.empty() && !hostScene().environment.present)
-    source = scene_->environmentSource = scene_->environmentInUse.isFallback ? "default" : "none";
+    source = scene_->environmentSource = scene_->environmentInUse.isFallback() ? "default" : "none";
   return job_.request.environment;
 }
 

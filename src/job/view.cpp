@@ -18,7 +18,6 @@
 #include "base/text.h"
 #include "io/codec.h"
 #include "scene/defaults/auto_camera.h"
-#include "scene/defaults/default_environment.h"
 #include "scene/model/limits.h"
 
 namespace quintet::job {
@@ -177,10 +176,11 @@ EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const Environment
     if (!repair.empty()) chosen.repair = fmt::format("{}: {}", printable(request.source), repair);
   } else if (scene.environment.present) {
     chosen = {scene.environment, "of the scene"};
-  } else if (!scene::hasEmitters(scene)) {
-    chosen = {scene::defaultEnvironment(), "default", true};
   } else {
-    chosen.description = "none";
+    const scene::OwnLight light = scene::ownLight(scene);
+    if (scene::needsEnvironment(light)) chosen.environment = scene::defaultEnvironment();
+    chosen.description = scene::needsEnvironment(light) ? "default" : "none";
+    chosen.decidedBy = light;
   }
   chosen.sourceIntensity = chosen.environment.intensity;
   chosen.sourceRotation = chosen.environment.rotation;

@@ -8,6 +8,7 @@
 
 #include "base/math.h"
 #include "job/request.h"
+#include "scene/defaults/default_environment.h"
 #include "scene/model/scene.h"
 
 namespace quintet::job {
@@ -29,14 +30,18 @@ uvec2 chooseImageSize(uvec2 requested, const scene::Camera& camera);
 struct EnvironmentChoice {
   scene::Environment environment;
   std::string description;  // for metadata: "sky.hdr", "default", "none", "of the scene"
-  bool isFallback = false;  // the default environment, used because the scene has no lights
+  // Set if neither the request nor the scene names an environment: the light of the scene, which decides.
+  std::optional<scene::OwnLight> decidedBy;
   std::string repair = {};  // "sky.exr: 1 pixel is …": what was changed in the image of the request; else empty
   // Before adjust().
   float sourceIntensity = 1;
   float sourceRotation = 0;  // radians
+
+  // The default environment, used because the scene does not light itself.
+  bool isFallback() const { return decidedBy && scene::needsEnvironment(*decidedBy); }
 };
 
-// The requested one, else the scene's, else the default one if the scene has no lights, else none. `maxMemory`: bytes
+// The requested one, else the scene's, else the default one if the scene does not light itself, else none. `maxMemory`: bytes
 // that the file of the environment can request (scene::LoadOptions). Throws FileError, MemoryError, UsageError.
 EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request,
                                     std::size_t maxMemory = 0);

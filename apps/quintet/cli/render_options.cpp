@@ -240,7 +240,7 @@ void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options)
         .value = "WHAT",
         .help =
             "Environment: an equirectangular image, none, default, or R,G,B (default: the scene's; 'default' if the "
-            "scene has no lights)",
+            "scene does not light itself)",
         .target = &options.request.environment.source,
         .candidates = {.names = {"none", "default"}, .extensions = {"hdr", "exr", "png", "jpg", "jpeg", "webp"}}},
        {.names = "--env-intensity",

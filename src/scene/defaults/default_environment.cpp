@@ -50,39 +50,9 @@ Environment defaultEnvironment() {
   return environment;
 }
 
-namespace {
-
-bool emits(const Material& material) { return glm::any(glm::greaterThan(material.emissive, vec3(0.0f))); }
-
-// At any time of the animation.
-bool emits(const Scene& scene, int material) {
-  if (material == kNone) return false;
-  const auto m = static_cast<std::size_t>(material);
-  if (emits(scene.materials[m])) return true;
-  return m < scene.materialStates.size() &&
-         std::ranges::any_of(scene.materialStates[m], [](const Material& state) { return emits(state); });
-}
-
-bool emits(const Scene& scene, const Mesh& mesh) {
-  const auto geometryEmits = [&](const Geometry& g) { return emits(scene, g.material); };
-  const auto setEmits = [&](const PrimitiveSet& set) {
-    return emits(scene, set.material) ||
-           std::ranges::any_of(set.primitives, [&](const Primitive& p) { return emits(scene, p.material); });
-  };
-  return std::ranges::any_of(mesh.geometries, geometryEmits) || std::ranges::any_of(mesh.primitiveSets, setEmits);
-}
-
-}  // namespace
-
-bool hasEmitters(const Scene& scene) {
-  return !scene.lights.empty() || std::ranges::any_of(scene.instances, [&](const Instance& instance) {
-    return emits(scene, scene.meshes[static_cast<std::size_t>(instance.mesh)]);
-  });
-}
-
 Environment effectiveEnvironment(const Scene& scene) {
   if (scene.environment.present) return scene.environment;
-  return hasEmitters(scene) ? Environment{} : defaultEnvironment();
+  return needsEnvironment(ownLight(scene)) ? defaultEnvironment() : Environment{};
 }
 
 }  // namespace quintet::scene

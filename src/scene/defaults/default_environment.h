@@ -3,6 +3,7 @@
 #ifndef QUINTET_SCENE_DEFAULTS_DEFAULT_ENVIRONMENT_H
 #define QUINTET_SCENE_DEFAULTS_DEFAULT_ENVIRONMENT_H
 
+#include "scene/defaults/own_light.h"
 #include "scene/model/scene.h"
 
 namespace quintet::scene {
@@ -16,10 +17,10 @@ namespace quintet::scene {
 // each channel. The light is neutral, mainly from above, with soft shadows.
 Environment defaultEnvironment();
 
-// Whether the scene has a light or an instance with an emissive material. The environment does not count.
-bool hasEmitters(const Scene& scene);
+// Whether a scene with this light of its own, and without an environment, gets the default environment.
+inline bool needsEnvironment(OwnLight light) { return light == OwnLight::none || light == OwnLight::faint; }
 
-// The scene's own environment; else the default environment if the scene has no emitters; else none (black).
+// The scene's own environment; else the default environment if the scene needs one; else none (black).
 Environment effectiveEnvironment(const Scene& scene);
 
 }  // namespace quintet::scene

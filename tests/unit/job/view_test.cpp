@@ -154,10 +154,10 @@ TEST(ChooseImageSize, FollowsTheAspect) {
 
 TEST(ChooseEnvironment, UsesTheFirstSpecified) {
   scene::Scene scene = makeScene();
-  EXPECT_TRUE(chooseEnvironment(scene, {}).isFallback);
+  EXPECT_TRUE(chooseEnvironment(scene, {}).isFallback());
   scene.lights.resize(1);
   EnvironmentChoice none = chooseEnvironment(scene, {});
-  EXPECT_FALSE(none.isFallback);
+  EXPECT_FALSE(none.isFallback());
   EXPECT_EQ(none.description, "none");
   EXPECT_TRUE(none.environment.image.empty());
   scene.environment.present = true;

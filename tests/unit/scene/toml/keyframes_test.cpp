@@ -306,13 +306,13 @@ TEST(MaterialKeyframes, ChangeFactorsAndEmission) {
   EXPECT_TRUE(scene.materialStates[1].empty());
 }
 
-// A lamp that is off at frame 0 still makes the environment black by default.
+// A lamp that is off at frame 0 still lights the scene, so that it gets no default environment.
 TEST(MaterialKeyframes, LightTheSceneLater) {
   const std::string lamp = "[[material]]\nname = 'lamp'\nemissive = [1, 1, 1]\nemissive_strength = 0\n";
   const std::string quad = "[[mesh]]\nshape = 'quad'\nmaterial = 'lamp'\n";
-  EXPECT_FALSE(scene::hasEmitters(parse(lamp + quad)));
-  EXPECT_TRUE(
-      scene::hasEmitters(parse(lamp + "keyframes = [{ time = 0 }, { time = 1, emissive_strength = 5 }]\n" + quad)));
+  EXPECT_EQ(scene::ownLight(parse(lamp + quad)), scene::OwnLight::none);
+  const std::string later = "keyframes = [{ time = 0 }, { time = 1, emissive_strength = 5 }]\n";
+  EXPECT_EQ(scene::ownLight(parse(lamp + later + quad)), scene::OwnLight::emission);
 }
 
 // ---- Documentation ----

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a scene lights itself, so that it needs no environment.
+#include "scene/defaults/own_light.h"
+
+#include <gtest/gtest.h>
+
+namespace quintet::test {
+namespace {
+
+using scene::OwnLight;
+
+class OwnLightOf : public testing::Test {
+ protected:
+  OwnLightOf() {
+    scene_.materials.resize(2);
+    lamp().emissive = vec3(5.0f);
+  }
+  scene::Material& wall() { return scene_.materials[0]; }
+  scene::Material& lamp() { return scene_.materials[1]; }
+
+  // A rectangle with these three corners, and its front where they are counter-clockwise.
+  void addQuad(const vec3& corner, const vec3& edge1, const vec3& edge2, int material) {
+    scene::Geometry geometry;
+    geometry.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
+    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
+    geometry.material = material;
+    scene::Mesh mesh;
+    mesh.geometries.push_back(std::move(geometry));
+    scene_.meshes.push_back(std::move(mesh));
+    scene::Instance instance;
+    instance.mesh = static_cast<int>(scene_.meshes.size()) - 1;
+    scene_.instances.push_back(instance);
+  }
+  // The faces of a cube with edges of length 2 around the origin, whose fronts are inside, or outside.
+  void addCube(bool inward, int material, float half = 1.0f) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const float side : {-half, half}) {
+        vec3 corner(-half), u(0), v(0);
+        corner[axis] = side;
+        u[(axis + 1) % 3] = 2 * half;
+        v[(axis + 2) % 3] = 2 * half;
+        if ((side < 0) == inward)
+          addQuad(corner, u, v, material);
+        else
+          addQuad(corner, v, u, material);
+      }
+  }
+  void addLamp(float y, float size) { addQuad({-size / 2, y, -size / 2}, {size, 0, 0}, {0, 0, size}, 1); }
+
+  scene::Scene scene_;
+};
+
+TEST_F(OwnLightOf, SceneWithoutLightsIsNone) {
+  lamp().emissive = vec3(0);
+  addCube(true, 0);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::none);
+}
+
+TEST_F(OwnLightOf, RoomWithALampIsEmission) {
+  addCube(true, 0);
+  addLamp(0.9f, 0.5f);
+  EXPECT_GT(scene::litShare(scene_), 0.7);  // not most of the ceiling, which is behind the lamp
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission);
+}
+
+TEST_F(OwnLightOf, ModelWithAnEmissivePartIsFaint) {
+  addCube(false, 0);
+  addLamp(1.01f, 1.9f);  // a display of a twelfth of the surface, which lights nothing else
+  EXPECT_NEAR(scene::litShare(scene_), 1.9 * 1.9 / (1.9 * 1.9 + 24.0), 0.03);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+TEST_F(OwnLightOf, WeakLampOfARoomIsFaint) {
+  addCube(true, 0);
+  addLamp(0.9f, 0.5f);
+  lamp().emissive = vec3(0.1f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+// The irradiance below a small lamp is L·A·cos⁴/h². A white surface has a radiance of 0.05 where it is 0.05π.
+TEST_F(OwnLightOf, ShareIsThatOfTheClosedForm) {
+  addQuad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, 0);
+  addLamp(1.0f, 0.1f);
+  lamp().emissive = vec3(100.0f);
+  // cos⁴ = 0.05π at the distance r with 1/(1 + r²)² = 0.05π; the disk has the area πr².
+  const double square = 1.0 / std::sqrt(0.05 * glm::pi<double>()) - 1.0;
+  EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() * square / 64.0, 0.02);
+}
+
+TEST_F(OwnLightOf, LampInAClosedShadeLightsOnlyTheInside) {
+  addCube(false, 0);        // the outside of the shade
+  addCube(true, 0, 0.99f);  // its inside
+  addLamp(0.0f, 0.5f);
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.05);
+  wall().transmission = 1.0f;  // glass casts no shadow, but the outside is on the other side of the faces
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.05);
+}
+
+TEST_F(OwnLightOf, ShadowsCount) {
+  const auto share = [&] { return scene::litShare(scene_); };
+  addQuad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 0);
+  addLamp(1.0f, 1.0f);
+  lamp().emissive = vec3(200.0f);
+  EXPECT_GT(share(), 0.95);
+  addQuad({-2, 0.5f, -2}, {0, 0, 4}, {4, 0, 0}, 0);  // a table of four times the area below the lamp
+  const double lit = (16.0 + 1.0) / (16.0 + 4.0 + 1.0);
+  EXPECT_NEAR(share(), lit, 0.03);
+  scene_.instances[2].mask = 0;
+  EXPECT_GT(share(), 0.95) << "hidden";
+}
+
+TEST_F(OwnLightOf, TransformsCount) {
+  addCube(false, 0);
+  addLamp(0.0f, 0.5f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+  for (std::size_t i = 0; i < 6; ++i) scene_.instances[i].worldFromObject = glm::scale(mat4(1.0f), vec3(1, 1, -1));
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint) << "a mirrored model has its front outside, too";
+  for (std::size_t i = 0; i < 6; ++i) scene_.instances[i].worldFromObject = glm::translate(mat4(1.0f), vec3(0, 2, 0));
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+TEST_F(OwnLightOf, EmissionWithATextureDoesNotCount) {
+  addCube(true, 0);
+  addLamp(0.9f, 0.5f);
+  lamp().emissiveTexture.texture = 0;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+TEST_F(OwnLightOf, PunctualLightCountsIfItShines) {
+  addCube(false, 0);
+  scene_.lights.emplace_back().intensity = vec3(0);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::none);
+  scene_.lights.emplace_back().intensity = vec3(0.001f);  // a night scene
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+}
+
+TEST_F(OwnLightOf, EmissiveSolidCounts) {
+  scene::PrimitiveSet set;
+  set.primitives.emplace_back().material = 1;
+  scene::Mesh mesh;
+  mesh.primitiveSets.push_back(set);
+  scene_.meshes.push_back(mesh);
+  scene_.instances.emplace_back().mesh = 0;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission);
+}
+
+TEST_F(OwnLightOf, DegenerateSurfacesAreNotCounted) {
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  addLamp(0.0f, 0.0f);
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+}  // namespace
+}  // namespace quintet::test
