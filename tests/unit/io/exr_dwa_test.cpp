@@ -2,6 +2,7 @@
 // The lossy compressions of OpenEXR near the largest half float: no finite value becomes infinite.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
