@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string lineOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string controlText(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 template <class Function>
 auto parsed(const Function& function) {
@@ -26,16 +26,16 @@ auto parsed(const Function& function) {
 
 std::string settingsJson(const WorkerSettings& settings) {
   const LabDefaults& defaults = settings.defaults;
-  return lineOf({{"folder", settings.folder},
-                 {"files", settings.files},
-                 {"device", settings.device},
-                 {"contained", settings.contained},
-                 {"memory", settings.memory},
-                 {"process", settings.process},
-                 {"width", defaults.size.x},
-                 {"height", defaults.size.y},
-                 {"samples", defaults.samples},
-                 {"timeout", defaults.timeout}});
+  return controlText({{"folder", settings.folder},
+                      {"files", settings.files},
+                      {"device", settings.device},
+                      {"contained", settings.contained},
+                      {"memory", settings.memory},
+                      {"process", settings.process},
+                      {"width", defaults.size.x},
+                      {"height", defaults.size.y},
+                      {"samples", defaults.samples},
+                      {"timeout", defaults.timeout}});
 }
 
 WorkerSettings parseSettings(std::string_view json) {
@@ -56,7 +56,7 @@ WorkerSettings parseSettings(std::string_view json) {
 }
 
 std::string controlJson(const ControlMessage& message) {
-  return lineOf({{"control", static_cast<int>(message.control)}, {"message", message.message}});
+  return controlText({{"control", static_cast<int>(message.control)}, {"message", message.message}});
 }
 
 ControlMessage parseControl(std::string_view json) {
