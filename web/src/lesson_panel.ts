@@ -107,7 +107,7 @@ export class LessonPanel {
     "div",
     { class: "version-row" },
     this.versionLabel,
-    h("button", { type: "button", class: "small", hidden: true, onclick: () => void this.backToProgram() }, "Back to the lesson's program"),
+    h("button", { type: "button", class: "small", hidden: true, title: "Open the lesson's program again", onclick: () => void this.backToProgram() }, "Back to the lesson"),
     menuButton(["Versions"], "Versions of the program", () => this.versionItems()),
   );
   private runs = new Map<string, RunCommand>(); // of the page, by the file that they write
@@ -202,7 +202,7 @@ export class LessonPanel {
     (this.versionRow.querySelector(":scope > button") as HTMLElement).hidden = own !== undefined;
     if (!this.original) return;
     if (!own) {
-      this.versionLabel.textContent = `Shown: ${this.host.workspace.program?.title ?? ""}`;
+      this.versionLabel.textContent = this.versionLabel.title = this.host.workspace.program?.title ?? "";
       return;
     }
     const solution = this.solutions().find(({ files }) => sameFiles(files, own));
@@ -345,7 +345,7 @@ export class LessonPanel {
     const run = this.runs.get(file);
     if (!run) throw new Error(`No command above makes ${file}`);
     const own = run.program === "mine" ? this.ownFiles : undefined;
-    if (run.program === "mine" && !own) throw new Error("Another program is open. Go back to the lesson's program.");
+    if (run.program === "mine" && !own) throw new Error("Another program is open. Go back to the lesson first.");
     const sources = own ? new Map(Object.entries(own)) : filesOf(await api.program(`<programs/${run.program}>`));
     return { files: sources, samples: run.frames, parameters: Object.fromEntries(Object.entries(run.parameters).map(([name, text]) => [name, valueOf(text)])) };
   }
