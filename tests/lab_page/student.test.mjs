@@ -222,6 +222,7 @@ test("a save that failed is repeated, and the page says so until it succeeds", a
   await left;
   full = false;
   await waitForSaved(page); // without another edit
+  assert.equal(await page.locator(".toast.error").count(), 0, "the message no longer holds");
   assert.match(textOf("16_callable"), /\/\/ kept/);
 });
 

@@ -80,6 +80,11 @@ export function notify(text: string, kind: "info" | "error" = "info"): void {
   if (kind === "info") setTimeout(() => toast.remove(), 4000);
 }
 
+// Removes a message that no longer holds.
+export function withdraw(text: string): void {
+  for (const shown of document.querySelectorAll(".toast")) if (shown.firstElementChild?.textContent === text) shown.remove();
+}
+
 export interface MenuItem {
   label: string;
   hint?: string;

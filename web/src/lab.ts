@@ -4,7 +4,7 @@
 import { api, type ApiError } from "./api";
 import { CameraControl } from "./camera_control";
 import { type Diagnostic, isRunFinding } from "./diagnostic";
-import { ask, menuButton, notify } from "./dialog";
+import { ask, menuButton, notify, withdraw } from "./dialog";
 import { h, replace } from "./dom";
 import { Downloads } from "./downloads";
 import { EditorArea } from "./editor_pane";
@@ -97,6 +97,7 @@ export class Lab {
       explain: (id) => void this.sources.explain(id),
       openLocation: (file, line, column) => void this.sources.open(file, line, column),
       notify,
+      withdraw,
     });
     this.editors = new EditorArea(this.workspace);
     this.sources = new SourceViewer(this.workspace, this.editors);

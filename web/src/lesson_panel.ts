@@ -356,7 +356,7 @@ export class LessonPanel {
     const edit = comments.map(parseEdit).find(Boolean);
     if (!edit) return lines;
     const where = edit.file === "mine.rt.glsl" ? "" : edit.file === "mine.scene.toml" ? "in the scene" : `in ${baseName(edit.file)}`;
-    const apply = h("button", { type: "button", class: "small", title: edit.from ? "Change the lesson's program in this way. Your version is kept" : "Make this change, too" }, edit.from ? "Apply to the lesson's program" : "Apply, too");
+    const apply = h("button", { type: "button", class: "small", title: edit.from ? "Change the lesson's program in this way. Your version is kept" : "Make this change, too" }, edit.from ? "Apply to the lesson's program" : "Apply this, too");
     apply.addEventListener("click", async () => {
       const original = this.original;
       if (!original) return;

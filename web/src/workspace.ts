@@ -76,6 +76,7 @@ export interface WorkspaceHandlers {
   explain: (id: string) => void;
   openLocation: (file: string, line: number, column: number) => void;
   notify: (message: string, kind: "info" | "error") => void;
+  withdraw: (message: string) => void; // that no longer holds
 }
 
 const kSaveDelay = 300; // ms after the last edit
@@ -418,6 +419,7 @@ export class Workspace {
       const saved = await api.save(file.path, text, file.hash);
       file.hash = saved.hash;
       file.base = text;
+      for (const message of file.message ? [`${file.path}: ${file.message}`, file.message] : []) this.handlers.withdraw(message);
       file.message = "";
       this.failures = 0;
       if (file.status === "saving") file.status = "saved";

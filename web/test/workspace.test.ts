@@ -56,6 +56,7 @@ function opened(): { workspace: Workspace; messages: string[] } {
     explain: () => undefined,
     openLocation: () => undefined,
     notify: (message) => messages.push(message),
+    withdraw: (message) => messages.includes(message) && messages.splice(messages.indexOf(message), 1),
   });
   const file = (path: string, role: string) => ({ path, role, text: disk.get(path)!, hash: hashOf(disk.get(path)!) });
   workspace.open({
@@ -149,6 +150,7 @@ test("a save that failed is repeated with longer pauses, reported once, and stop
     assert.equal(workspace.status, "saved");
     assert.equal(scene.message, "");
     assert.equal(disk.get("mine/a.scene.toml"), "# edited\n");
+    assert.deepEqual(messages, [], "the error no longer holds");
     const count = tries();
     await elapse(100);
     assert.equal(tries(), count);
