@@ -28,7 +28,7 @@ std::uint32_t componentsOf(const Module& module, Id typeId) {
   return type->kind == Type::Kind::floating && type->width == 32 && count <= 4 ? count : 0;
 }
 
-Id typeOf(const Module& module, Id value) {
+Id typeIdOf(const Module& module, Id value) {
   const Instruction* const definition = module.definition(value);
   return definition ? definition->type : 0;
 }
@@ -120,7 +120,7 @@ class ValueChecks {
     voidType_ = module.definition(keep_)->type;
     // The parameters of valueResult1_ are the number and three floats.
     const Function* const first = module.function(functions_[0]);
-    numberType_ = first && !first->parameters.empty() ? typeOf(module, first->parameters.front()) : 0;
+    numberType_ = first && !first->parameters.empty() ? typeIdOf(module, first->parameters.front()) : 0;
     if (numberType_ == 0) throw Error("a module whose values are checked has other functions for it");
   }
 
@@ -161,7 +161,7 @@ class ValueChecks {
       const Instruction& i = instructionOf(values_[k]);
       addZero(i.type);
       for (const Id operand : valueOperands(i))
-        if (const Id type = typeOf(module_, operand); componentsOf(module_, type) > 0) addZero(type);
+        if (const Id type = typeIdOf(module_, operand); componentsOf(module_, type) > 0) addZero(type);
     }
   }
   void addZero(Id type) {
@@ -180,7 +180,7 @@ class ValueChecks {
                        i.op == Op::OpImageSampleExplicitLod || i.op == Op::OpImageFetch || i.op == Op::OpImageRead;
     if (!reads)
       for (const Id operand : valueOperands(i)) {
-        const Id type = typeOf(module_, operand);
+        const Id type = typeIdOf(module_, operand);
         if (componentsOf(module_, type) == 0 || known == operands.size()) continue;
         operands[known++] = type == i.type ? operand : converted(operand, type, i.type, count);
       }
