@@ -242,6 +242,7 @@ uvec2 Window::windowedSize() const {
 std::optional<glm::ivec2> Window::position() const {
   if (::glfwGetWindowMonitor(handle_)) return std::nullopt;
   glm::ivec2 position{0};
+  ::glfwGetError(nullptr);  // forgets an earlier one
   ::glfwGetWindowPos(handle_, &position.x, &position.y);
   if (::glfwGetError(nullptr) != GLFW_NO_ERROR) return std::nullopt;  // Wayland
   return position;
