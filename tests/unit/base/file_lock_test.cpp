@@ -71,30 +71,31 @@ TEST(FileLockTest, EndsWithTheProcess) {
   EXPECT_EQ(folder.entryCount(), 0u);
 }
 
-// A process that was killed takes a moment to end.
+// A process that was killed takes a moment to end. Here it ends when the wait begins.
 TEST(FileLockTest, WaitsForTheOwner) {
   const TempFolder folder;
-  int ready[2];
+  int ready[2], end[2];
   ASSERT_EQ(::pipe(ready), 0);
+  ASSERT_EQ(::pipe(end), 0);
   const pid_t owner = fork();
+  char byte = 'x';
   if (owner == 0) {
     const FileLock lock(folder / "a");
-    if (::write(ready[1], "x", 1) == 1) ::usleep(300'000);
-    _exit(0);
+    _exit(::write(ready[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) == 1 ? 0 : 1);
   }
-  char byte = 0;
   ASSERT_EQ(::read(ready[0], &byte, 1), 1);
   std::vector<std::string> notes;
-  const auto note = [&](const std::string& text) { notes.push_back(text); };
-  EXPECT_THROW(FileLock(folder / "a", 0.1, note), FileError);
+  EXPECT_THROW(FileLock(folder / "a", 0.1, [&](const std::string& text) { notes.push_back(text); }), FileError);
   EXPECT_EQ(notes.size(), 1u);
-  const FileLock lock(folder / "a", 20, note);
+  const FileLock lock(folder / "a", 60, [&](const std::string& text) {
+    notes.push_back(text);
+    EXPECT_EQ(::write(end[1], &byte, 1), 1);
+  });
   ASSERT_EQ(notes.size(), 2u);
   EXPECT_THAT(notes[1], testing::AllOf(HasSubstr("a: is in use by process " + std::to_string(owner)),
-                                       HasSubstr("waiting up to 20 s")));
+                                       HasSubstr("waiting up to 60 s")));
   ASSERT_EQ(waitpid(owner, nullptr, 0), owner);
-  ::close(ready[0]);
-  ::close(ready[1]);
+  for (const int file : {ready[0], ready[1], end[0], end[1]}) ::close(file);
 }
 
 }  // namespace
