@@ -2,6 +2,9 @@
 // `render` with several scenes: names of their files, failures of some of them, and the same bytes as one by one.
 #include <algorithm>
 #include <csignal>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -83,8 +86,10 @@ TEST_F(SeveralScenes, ContinueAfterACrash) {
   ASSERT_TRUE(process.waitForNext("{\"scene\":\"scene.gltf\"}"));
   ASSERT_TRUE(process.waitForNext("\"samples\":"));
   const std::string id = std::to_string(process.id());
-  const std::string child = readTextFile("/proc/" + id + "/task/" + id + "/children");
-  ASSERT_EQ(::kill(std::stoi(child), SIGSEGV), 0);
+  pid_t child = 0;
+  std::ifstream("/proc/" + id + "/task/" + id + "/children") >> child;
+  ASSERT_GT(child, 0);
+  ASSERT_EQ(::kill(child, SIGSEGV), 0);
   ASSERT_TRUE(process.waitForNext("scene.gltf: crash"));
   ASSERT_TRUE(process.waitForNext("{\"scene\":\"red.gltf\"}"));
   ASSERT_TRUE(process.waitForNext("\"samples\":"));

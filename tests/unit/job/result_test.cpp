@@ -107,6 +107,7 @@ TEST(ResultWarnings, AddUpFrames) {
   setCounts(sum, {5, 1, {3, 4}}, {{"color", 2, {8, 1}}});
   setCounts(frame, {5, 2, {9, 3}}, {{"color", 3, {1, 1}}, {"depth", 1, {0, 0}}});
   addFrame(sum, frame);
+  EXPECT_EQ(sum.provenance.rays, 10u);
   EXPECT_EQ(sum.provenance.droppedSamples, 3u);
   EXPECT_EQ(sum.provenance.firstDroppedSample, (PixelPosition{9, 3}));
   EXPECT_THAT(sum.notFinite,

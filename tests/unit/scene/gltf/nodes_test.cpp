@@ -242,11 +242,13 @@ TEST(GltfCamera, ReadsPerspectiveCameras) {
                           {"perspective", {{"yfov", 0.5}, {"aspectRatio", 1.5}, {"znear", 0.1}}}});
   // Scaled, mirrored, translated, looking along +x.
   builder.add("nodes", {{"camera", 0},
+                        {"name", "Camera.001"},
                         {"translation", {1, 2, 3}},
                         {"scale", {-2, 3, 4}},
                         {"rotation", {0, -0.7071067811865476, 0, 0.7071067811865476}}});
   const scene::Camera camera = builder.load().cameras.at(0);
   EXPECT_EQ(camera.name, "main");
+  EXPECT_EQ(camera.nodeName, "Camera.001");
   EXPECT_FALSE(camera.orthographic);
   EXPECT_FLOAT_EQ(camera.verticalFov, 0.5f);
   EXPECT_FLOAT_EQ(camera.aspect, 1.5f);
