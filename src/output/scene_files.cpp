@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace quintet::output {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::string_view kScene = "{scene}", kFolder = "{folder}";
 
 std::string nameOf(const std::filesystem::path& scene) {
+  if (scene == kStandardInput) return "stdin";
   std::filesystem::path name = scene.filename().stem();
   if (scene.extension() == ".toml" && name.extension() == ".scene") name = name.stem();
   return name.string();

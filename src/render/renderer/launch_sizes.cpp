@@ -54,7 +54,7 @@ void LaunchSizes::add(double pixelSamples, double seconds) {
     // Strips differ in cost: the rate rises slowly and falls immediately.
     rate_ = std::min(lastRate_, 2.0 * rate_);
   } else {
-    rate_ = 0.25 * lastRate_;  // the first launch also compiles on a CPU
+    rate_ = 0.25 * lastRate_;  // of the few pixels of the first launch
   }
 }
 

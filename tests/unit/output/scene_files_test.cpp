@@ -31,6 +31,7 @@ TEST(SceneFiles, ReplaceNamesOfSceneAndFolder) {
   EXPECT_EQ(sceneFile("{scene}.png", "fox.v2.gltf"), "fox.v2.png");
   EXPECT_EQ(sceneFile("{folder}/{scene}_{scene}.exr", "/models/fox/scene.gltf"), "fox/scene_scene.exr");
   EXPECT_EQ(sceneFile("{folder}.png", std::filesystem::current_path() / "x/../y/scene.gltf"), "y.png");
+  EXPECT_EQ(sceneFile("{scene}.png", "-"), "stdin.png") << "-.png would be standard output";
   EXPECT_EQ(sceneFile("{other}{.png", "fox.glb"), "{other}{.png");
   EXPECT_EQ(sceneFile("{scene}.png", "{folder}.glb"), "{folder}.png") << "names are no patterns";
 }
