@@ -35,10 +35,11 @@ class BatchSpeed {
     left_ = std::ceil(p.samples / size - 1e-6) * size - p.samples;
     if (p.sampleLimit) left_ = std::min(left_, static_cast<double>(*p.sampleLimit) - p.samples);
   }
+  // 0 if it is unknown, which it is only until the second launch.
   double secondsToTheNextBatch() const {
     if (!last_ || left_ <= 0) return 0;
     const double samples = last_->samples - first_.samples, seconds = last_->seconds - first_.seconds;
-    return samples > 0 ? left_ * seconds / samples : std::numeric_limits<double>::infinity();
+    return samples > 0 ? left_ * seconds / samples : 0;
   }
 
  private:
@@ -54,8 +55,8 @@ class ApiObserver : public job::Observer {
       : function_(function), canceled_(std::move(canceled)) {}
 
   void progress(const job::Progress& p) override {
-    if (stop_) return;
     batchSpeed_.add(p);
+    if (stop_) return;
     try {
       const std::optional<double> error = p.error && std::isfinite(*p.error) ? p.error : std::nullopt;
       if (function_ && *function_)
