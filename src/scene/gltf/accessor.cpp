@@ -262,9 +262,11 @@ void resolveBufferViews(Document& document) {
   for (std::size_t i = 0; i < document.model.bufferViews.size(); ++i) {
     const tinygltf::BufferView& view = document.model.bufferViews[i];
     const std::string location = fmt::format("/bufferViews/{}", i);
-    if (view.extensions.contains(kMeshopt)) {
+    const bool compressed = view.extensions.contains(kMeshopt);
+    if (compressed || view.extensions.contains(kOldMeshopt)) {
+      const char* name = compressed ? kMeshopt : kOldMeshopt;
       document.bufferViews.push_back(document.storage.emplace_back(
-          decodeMeshopt(document, view, fmt::format("{}/extensions/{}", location, kMeshopt))));
+          decodeMeshopt(document, view, name, fmt::format("{}/extensions/{}", location, name))));
       continue;
     }
     const Buffer& buffer = document.buffers[static_cast<std::size_t>(view.buffer)];

@@ -13,7 +13,8 @@
 
 namespace quintet::scene {
 
-// Fills Document::bufferViews, used or not: ranges of buffers, decompressed where EXT_meshopt_compression applies.
+// Fills Document::bufferViews, used or not: ranges of buffers, decompressed where KHR_meshopt_compression or
+// EXT_meshopt_compression applies.
 // Throws FileError.
 void resolveBufferViews(Document&);
 

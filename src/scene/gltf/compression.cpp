@@ -9,41 +9,48 @@
 
 #include "base/plural.h"
 #include "scene/gltf/extensions.h"
+#include "scene/gltf/meshopt.h"
 
 namespace quintet::scene {
 namespace {
 
 // ---- meshopt ----
 
-// Above what the codecs can reach (64 : 1 for vertices, one byte per triangle or index). Data that states a higher
-// ratio is invalid, and the stated size must not be allocated.
-constexpr std::size_t kMaxRatio = 128;
+// What the codecs can reach: 64 : 1 for vertices in version 0, 1024 : 1 in version 1 (two bits for each of up to 256 equal
+// bytes), one byte per triangle or index. Data that states a higher ratio is invalid, and the stated size must not be
+// allocated.
+constexpr std::size_t kMaxRatio = 128, kMaxRatioVersion1 = 1024;
 
 bool strideFits(const std::string& mode, const std::string& filter, std::size_t stride) {
   if (mode != "ATTRIBUTES") return stride == 2 || stride == 4;
-  if (filter == "OCTAHEDRAL") return stride == 4 || stride == 8;
+  if (filter == "OCTAHEDRAL" || filter == "COLOR") return stride == 4 || stride == 8;
   if (filter == "QUATERNION") return stride == 8;
   return stride % 4 == 0 && stride <= 256;
 }
 
-int decode(const std::string& mode, std::byte* out, std::size_t count, std::size_t stride,
-           std::span<const std::byte> in) {
+// Returns whether the data is valid.
+bool decode(const std::string& mode, std::span<std::byte> out, std::size_t stride, std::span<const std::byte> in) {
   const auto* data = reinterpret_cast<const unsigned char*>(in.data());
-  if (mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out, count, stride, data, in.size());
-  if (mode == "INDICES") return meshopt_decodeIndexSequence(out, count, stride, data, in.size());
-  return meshopt_decodeVertexBuffer(out, count, stride, data, in.size());
+  const std::size_t count = out.size() / stride;
+  if (mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out.data(), count, stride, data, in.size()) == 0;
+  if (mode == "INDICES") return meshopt_decodeIndexSequence(out.data(), count, stride, data, in.size()) == 0;
+  if (isMeshoptVersion1(in)) return decodeMeshoptVersion1(out, stride, in);
+  return meshopt_decodeVertexBuffer(out.data(), count, stride, data, in.size()) == 0;
 }
 
-void applyFilter(const std::string& filter, std::byte* data, std::size_t count, std::size_t stride) {
-  if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(data, count, stride);
-  if (filter == "QUATERNION") meshopt_decodeFilterQuat(data, count, stride);
-  if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data, count, stride);
+void applyFilter(const std::string& filter, std::span<std::byte> data, std::size_t stride) {
+  const std::size_t count = data.size() / stride;
+  if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(data.data(), count, stride);
+  if (filter == "QUATERNION") meshopt_decodeFilterQuat(data.data(), count, stride);
+  if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data.data(), count, stride);
+  if (filter == "COLOR") decodeMeshoptColors(data, stride);
 }
 
 }  // namespace
 
-FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& view, const std::string& location) {
-  const tinygltf::Value& extension = *findExtension(view.extensions, kMeshopt);
+FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& view, const std::string& name,
+                        const std::string& location) {
+  const tinygltf::Value& extension = *findExtension(view.extensions, name);
   const auto size = [&](const char* key) { return static_cast<std::size_t>(indexOf(extension, key, 0)); };
   const std::size_t buffer = size("buffer"), offset = size("byteOffset"), length = size("byteLength");
   const std::span<const std::byte> bytes = document.buffers[buffer].data;
@@ -62,16 +69,17 @@ FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& vi
     document.fail(location + "/count", fmt::format("{} is not a multiple of 3", count));
   if (mode != "ATTRIBUTES" && filter != "NONE")
     document.fail(location + "/filter", "only attributes can have a filter");
-  if (count * stride > kMaxRatio * length)
+  const std::span<const std::byte> stream = bytes.subspan(offset, length);
+  const bool version1 = mode == "ATTRIBUTES" && isMeshoptVersion1(stream);
+  if (count * stride > (version1 ? kMaxRatioVersion1 : kMaxRatio) * length)
     document.fail(location + "/count",
                   fmt::format("{} cannot hold {}", counted(length, "byte"), counted(count, "element")));
 
   document.budget->take(count * stride);
   FileBytes result(count * stride);
   if (count == 0) return result;
-  if (decode(mode, result.data(), count, stride, bytes.subspan(offset, length)) != 0)
-    document.fail(location, "invalid compressed data");
-  applyFilter(filter, result.data(), count, stride);
+  if (!decode(mode, result, stride, stream)) document.fail(location, "invalid compressed data");
+  applyFilter(filter, result, stride);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two compression extensions: EXT_meshopt_compression (buffer views in meshoptimizer's vertex and index codecs) and
-// KHR_draco_mesh_compression (triangles and attributes of one primitive in a Draco stream).
+// The compression extensions: KHR_meshopt_compression and its predecessor EXT_meshopt_compression (buffer views in
+// meshoptimizer's vertex and index codecs), and KHR_draco_mesh_compression (triangles and attributes of one primitive in a
+// Draco stream).
 #ifndef QUINTET_SCENE_GLTF_COMPRESSION_H
 #define QUINTET_SCENE_GLTF_COMPRESSION_H
 
@@ -13,8 +14,9 @@
 
 namespace quintet::scene {
 
-// Decompressed bytes of `view`, which has the extension. `location` is that of the extension object. Throws FileError.
-FileBytes decodeMeshopt(const Document&, const tinygltf::BufferView& view, const std::string& location);
+// Decompressed bytes of `view`, which has the extension `name`. `location` is that of the extension object. Throws FileError.
+FileBytes decodeMeshopt(const Document&, const tinygltf::BufferView& view, const std::string& name,
+                        const std::string& location);
 
 class DracoMesh {
  public:

@@ -295,7 +295,7 @@ std::vector<ImageSource> readImageSources(const Document& document, const json& 
   return sources;
 }
 
-// A buffer without uri and BIN chunk has no data, such as the fallback buffers of EXT_meshopt_compression.
+// A buffer without uri and BIN chunk has no data, such as the fallback buffers of KHR_meshopt_compression.
 void loadBuffers(Document& document, const json& buffers, const Container& container) {
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const json& buffer = buffers[i];

@@ -42,6 +42,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_texture_basisu",
     "EXT_mesh_gpu_instancing",
     "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",
     "EXT_meshopt_compression",
 });
 

@@ -14,7 +14,8 @@
 namespace quintet::scene {
 
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
-inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
+inline constexpr const char* kMeshopt = "KHR_meshopt_compression";
+inline constexpr const char* kOldMeshopt = "EXT_meshopt_compression";
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
 inline constexpr const char* kTextureTransform = "KHR_texture_transform";

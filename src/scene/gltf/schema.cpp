@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -150,7 +151,8 @@ constexpr std::string_view kVectorTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "
 constexpr std::string_view kCameraTypes[] = {"perspective", "orthographic"};
 constexpr std::string_view kAlphaModes[] = {"OPAQUE", "MASK", "BLEND"};
 constexpr std::string_view kMeshoptModes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
-constexpr std::string_view kMeshoptFilters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+constexpr std::string_view kMeshoptFilters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"};
+constexpr auto kOldMeshoptFilters = std::span(kMeshoptFilters).first<4>();
 constexpr int kComponentTypes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 constexpr int kIndexTypes[] = {5121, 5123, 5125};
 constexpr int kModes[] = {0, 1, 2, 3, 4, 5, 6};
@@ -164,16 +166,23 @@ constexpr Property kAsset[] = {required(string("version")), string("minVersion")
                                string("copyright"), object("extensions", kOnlyMetadata)};
 
 constexpr Property kMeshoptFallback[] = {boolean("fallback")};
-constexpr Property kBufferExtensions[] = {object("EXT_meshopt_compression", kMeshoptFallback)};
+constexpr Property kBufferExtensions[] = {object("KHR_meshopt_compression", kMeshoptFallback),
+                                          object("EXT_meshopt_compression", kMeshoptFallback)};
 constexpr Property kBuffer[] = {required(integer("byteLength", 1, kMaxBytes)), string("uri"), string("name"),
                                 object("extensions", kBufferExtensions)};
 
-constexpr Property kMeshoptView[] = {
-    required(index("buffer", kBuffers)),     integer("byteOffset"),         required(integer("byteLength", 1)),
-    required(integer("byteStride", 1, 256)), required(integer("count", 0)), required(choice("mode", kMeshoptModes)),
-    choice("filter", kMeshoptFilters),
-};
-constexpr Property kViewExtensions[] = {object("EXT_meshopt_compression", kMeshoptView)};
+constexpr std::array<Property, 7> meshoptView(std::span<const std::string_view> filters) {
+  return {required(index("buffer", kBuffers)),
+          integer("byteOffset"),
+          required(integer("byteLength", 1)),
+          required(integer("byteStride", 1, 256)),
+          required(integer("count", 0)),
+          required(choice("mode", kMeshoptModes)),
+          choice("filter", filters)};
+}
+constexpr auto kMeshoptView = meshoptView(kMeshoptFilters), kOldMeshoptView = meshoptView(kOldMeshoptFilters);
+constexpr Property kViewExtensions[] = {object("KHR_meshopt_compression", kMeshoptView),
+                                        object("EXT_meshopt_compression", kOldMeshoptView)};
 constexpr Property kBufferView[] = {required(index("buffer", kBuffers)),
                                     integer("byteOffset", 0, kMaxBytes),
                                     required(integer("byteLength", 1, kMaxBytes)),

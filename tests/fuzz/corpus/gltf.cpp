@@ -119,6 +119,7 @@ void addGltfSeeds(Corpora& corpora) {
   add("everything", test::sceneWithEverything());
   add("draco", test::DracoBuilder());
   add("meshopt", test::MeshoptBuilder());
+  add("meshopt_version_1", test::stripInVersion1());
   add("other_extensions", withOtherExtensions());
   add("morphed", test::morphingTriangle());
   for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"})

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <numeric>
+#include <random>
 
+#include "io/basis_lz_builder.h"
 #include "io/exr_samples.h"
 #include "io/ktx2_builder.h"
 #include "io/samples.h"
@@ -30,6 +32,25 @@ void addKtx2Formats(std::vector<Seed>& seeds) {
   }
 }
 
+// Basis Universal with every kind of symbol of BasisLZ, and a block of each mode of UASTC.
+void addBasisUniversal(std::vector<Seed>& seeds) {
+  std::mt19937 random(1);
+  for (unsigned i = 0; i < 16; ++i) {
+    io::test::BasisLzImage image{.width = 1 + random() % 60, .height = 1 + random() % 60};
+    image.gray = i % 4 == 1, image.rawSelectors = i % 4 == 2, image.skewed = i % 2 == 1;
+    image.historySize = i % 3 * 7;
+    image.fill(random, 1 + random() % 40, 1 + random() % 40, 1 + i % 2);
+    io::test::Ktx2 file = i % 2 == 0 ? image.file(random, {i == 0 ? 3 : 0}) : image.file(random, {0, 15});
+    seeds.push_back({"basis_lz_" + std::to_string(i) + ".ktx2", file.build()});
+  }
+  io::test::Ktx2 blocks{.format = 0, .width = 128, .height = 4, .level = Bytes(32 * 16)};
+  for (std::byte& byte : blocks.level) byte = static_cast<std::byte>(random());
+  for (const int channels : {0, 3, 4, 5, 6}) {
+    blocks.describe(166, {channels});
+    seeds.push_back({"uastc_" + std::to_string(channels) + ".ktx2", blocks.build()});
+  }
+}
+
 }  // namespace
 
 void addImageSeeds(Corpora& corpora) {
@@ -44,6 +65,7 @@ void addImageSeeds(Corpora& corpora) {
         {"layers_" + name + ".exr", io::encodeExr(io::test::layeredImage(7, 5), {.compression = compression})});
   }
   addKtx2Formats(corpora["ktx2"]);
+  addBasisUniversal(corpora["ktx2"]);
 }
 
 }  // namespace quintet::fuzz

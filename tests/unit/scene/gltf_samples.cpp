@@ -6,8 +6,13 @@
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
+#include <cstring>
 #include <memory>
+#include <random>
 #include <span>
+#include <utility>
+
+#include "scene/meshopt_writer.h"
 
 namespace quintet::test {
 namespace {
@@ -106,7 +111,7 @@ DracoBuilder::DracoBuilder() {
               {{"bufferView", view}, {"attributes", {{"POSITION", positionId}, {"TEXCOORD_0", uvId}}}}}}}});
 }
 
-MeshoptBuilder::MeshoptBuilder() {
+MeshoptBuilder::MeshoptBuilder(std::string name) : extension(std::move(name)) {
   std::vector<vec3> positions;
   for (int i = 0; i < 20; ++i) positions.emplace_back(i / 2, i % 2, 0);
   std::vector<std::uint32_t> indices;
@@ -126,10 +131,10 @@ MeshoptBuilder::MeshoptBuilder() {
       add("accessors",
           {{"bufferView", 1}, {"componentType", kUnsignedShort}, {"count", indices.size()}, {"type", "SCALAR"}});
   addMesh({{"attributes", {{"POSITION", p}}}, {"indices", i}});
-  root["extensionsUsed"] = root["extensionsRequired"] = {"EXT_meshopt_compression"};
+  root["extensionsUsed"] = root["extensionsRequired"] = {extension};
   // Buffer 1 is the fallback buffer, without data.
   root["buffers"] = {{{"byteLength", binary.size()}},
-                     {{"byteLength", 1000}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+                     {{"byteLength", 1000}, {"extensions", {{extension, {{"fallback", true}}}}}}};
 }
 
 void MeshoptBuilder::addCompressed(const std::vector<unsigned char>& data, std::size_t count, std::size_t stride,
@@ -139,13 +144,33 @@ void MeshoptBuilder::addCompressed(const std::vector<unsigned char>& data, std::
   root["bufferViews"][static_cast<std::size_t>(view)] = {{"buffer", 1},
                                                          {"byteLength", count * stride},
                                                          {"extensions",
-                                                          {{"EXT_meshopt_compression",
+                                                          {{extension,
                                                             {{"buffer", 0},
                                                              {"byteOffset", inside["byteOffset"]},
                                                              {"byteLength", inside["byteLength"]},
                                                              {"byteStride", stride},
                                                              {"count", count},
                                                              {"mode", mode}}}}}};
+}
+
+MeshoptBuilder stripInVersion1() {
+  MeshoptBuilder builder("KHR_meshopt_compression");
+  std::mt19937 random(3);
+  std::vector<unsigned char> elements(20 * sizeof(vec3)), colors;
+  for (std::size_t i = 0; i < 20; ++i) {
+    const vec3 position(i / 2, i % 2, 0);
+    std::memcpy(elements.data() + i * sizeof position, &position, sizeof position);
+    for (const int value : {100, 20, 226, 0x80 | 0x7F}) colors.push_back(static_cast<unsigned char>(value));
+  }
+  builder.addCompressed(writeMeshoptVersion1(elements, 12, {0x82, 1, 0}, random), 20, 12, "ATTRIBUTES");
+  builder.addCompressed(writeMeshoptVersion1(colors, 4, {0}, random), 20, 4, "ATTRIBUTES");
+  builder.meshopt(3)["filter"] = "COLOR";
+  builder.root["buffers"][0]["byteLength"] = builder.binary.size();
+  builder.root["accessors"][0]["bufferView"] = 2;
+  const int view = builder.add(
+      "accessors", {{"bufferView", 3}, {"componentType", 5121}, {"normalized", true}, {"count", 20}, {"type", "VEC4"}});
+  builder.primitive()["attributes"]["COLOR_0"] = view;
+  return builder;
 }
 
 }  // namespace quintet::test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_draco_mesh_compression and EXT_meshopt_compression, with streams from the encoders of the libraries.
+// KHR_draco_mesh_compression and EXT_meshopt_compression, with streams from the encoders of the libraries, and
+// KHR_meshopt_compression.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
@@ -7,13 +8,17 @@
 #include <meshoptimizer.h>
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
-
+#include <optional>
 #include <random>
+#include <span>
 
 #include "base/error.h"
 #include "scene/error_matcher.h"
+#include "scene/gltf/meshopt.h"
 #include "scene/gltf_samples.h"
+#include "scene/meshopt_writer.h"
 
 namespace quintet::test {
 namespace {
@@ -140,6 +145,137 @@ TEST(GltfMeshopt, SurvivesEveryCorruptByte) {
       } catch (const Error&) {
       }
     }
+}
+
+// ---- Version 1 of the vertex codec ----
+
+using Stream = std::vector<unsigned char>;
+
+// The elements of the stream; nothing if it is not valid.
+std::optional<Stream> decodedVersion1(const Stream& stream, std::size_t count, std::size_t stride) {
+  Stream elements(count * stride);
+  const bool valid = scene::decodeMeshoptVersion1(std::as_writable_bytes(std::span(elements)), stride,
+                                                  std::as_bytes(std::span(stream)));
+  return valid ? std::optional(elements) : std::nullopt;
+}
+
+// The example of the specification: sixteen 4-bit differences, two of them in a byte of their own.
+TEST(MeshoptVersion1, DecodesTheExampleOfTheSpecification) {
+  Stream stream{0xA1, 0xA8, 0x03, 0x17, 0x5F, 0xF0, 0xBC, 0x77, 0xA9, 0x21, 0x00, 0x34, 0xB5};
+  stream.resize(stream.size() + 24);
+  const std::optional<Stream> elements = decodedVersion1(stream, 16, 4);
+  ASSERT_TRUE(elements);
+  int sum = 0;
+  const int differences[] = {-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0};
+  for (std::size_t i = 0; i < 16; ++i) {
+    sum += differences[i];
+    EXPECT_EQ((*elements)[4 * i], static_cast<unsigned char>(sum)) << i;
+    EXPECT_EQ((*elements)[4 * i + 1], 0);
+  }
+}
+
+TEST(MeshoptVersion1, DecodesAllModes) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 300; ++i) {
+    const std::size_t stride = 4 * (1 + random() % (i % 10 == 0 ? 64 : 8)), count = 1 + random() % 600;
+    Stream modes(stride / 4), elements(count * stride);
+    for (unsigned char& mode : modes) mode = static_cast<unsigned char>(random() % 3);
+    for (unsigned char& mode : modes)
+      if (mode == 2) mode = static_cast<unsigned char>(2 + 16 * (random() % 16));
+    const std::uint32_t range = std::array{1u, 3u, 20u, 256u}[random() % 4];
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const std::uint32_t last = k < stride ? 0u : elements[k - stride];
+      elements[k] = static_cast<unsigned char>(random() % 4 == 0 ? last + random() % range : last);
+    }
+    const Stream stream = writeMeshoptVersion1(elements, stride, modes, random);
+    ASSERT_EQ(decodedVersion1(stream, count, stride), elements) << i;
+    for (std::size_t size = 0; size < stream.size(); size += 1 + stream.size() / 40)
+      EXPECT_FALSE(
+          decodedVersion1({stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(size)}, count, stride));
+    Stream longer = stream;
+    longer.insert(longer.begin() + 1, 7);
+    EXPECT_NE(decodedVersion1(longer, count, stride), elements);
+    // Other channel modes are not valid.
+    for (const int mode : {3, 0x10, 0x11, 0x0F}) {
+      Stream other = stream;
+      other.back() = static_cast<unsigned char>(mode);
+      EXPECT_FALSE(decodedVersion1(other, count, stride)) << mode;
+    }
+  }
+}
+
+TEST(MeshoptVersion1, SurvivesChangedStreams) {
+  std::mt19937 random(13);
+  Stream elements(12 * 300);
+  for (unsigned char& byte : elements) byte = static_cast<unsigned char>(random() % 3);
+  const Stream stream = writeMeshoptVersion1(elements, 12, {0, 1, 0x52}, random);
+  for (int i = 0; i < 3000; ++i) {
+    Stream changed = stream;
+    for (auto changes = 1 + random() % 4; changes > 0; --changes)
+      changed[random() % changed.size()] = static_cast<unsigned char>(random());
+    if (i % 4 == 0) changed.resize(random() % changed.size());
+    (void)decodedVersion1(changed, 300, 12);
+  }
+}
+
+TEST(MeshoptVersion1, ConvertsColors) {
+  const auto bytes = [](Stream colors) {
+    scene::decodeMeshoptColors(std::as_writable_bytes(std::span(colors)), 4);
+    return colors;
+  };
+  // 8 bits: red is luma + orange - green, and so on. Alpha has 7 bits behind the highest one.
+  EXPECT_THAT(bytes({100, 20, 226, 0x80 | 0x55}), ElementsAre(150, 70, 110, 171));
+  // 4 bits, which are scaled by 17.
+  EXPECT_THAT(bytes({5, 2, 255, 8 | 5}), ElementsAre(136, 68, 68, 187));
+  EXPECT_THAT(bytes({5, 2, 255, 0}), ElementsAre(0, 0, 0, 0));  // not valid
+  // 171 of 511, to the nearest value: 21930.4975.
+  std::array<std::uint16_t, 4> wide{171, 0, 0, 256 | 85};
+  scene::decodeMeshoptColors(std::as_writable_bytes(std::span(wide)), 8);
+  EXPECT_THAT(wide, ElementsAre(21930, 21930, 21930, 21930));
+}
+
+TEST(GltfMeshopt, ReadsTheKhronosExtension) {
+  MeshoptBuilder builder("KHR_meshopt_compression");
+  scene::Scene scene = builder.load();
+  EXPECT_TRUE(scene.report.isExact());
+  EXPECT_THAT(scene.report.extensionsUsed, ElementsAre("KHR_meshopt_compression"));
+  EXPECT_EQ(scene.meshes.at(0).geometries.at(0).positions[19], vec3(9, 1, 0));
+  // Positions in version 1, and colors.
+  builder = stripInVersion1();
+  scene = builder.load();
+  const Geometry& g = scene.meshes.at(0).geometries.at(0);
+  EXPECT_EQ(g.positions[19], vec3(9, 1, 0));
+  ASSERT_EQ(g.colors.size(), 20u);
+  EXPECT_EQ(g.colors[19], vec4(150, 70, 110, 255) / 255.0f);
+  // COLOR needs strides of 4 or 8, and the extension of Khronos.
+  const std::string location = "/bufferViews/3/extensions/KHR_meshopt_compression";
+  builder.meshopt(3)["byteStride"] = 12;
+  EXPECT_THAT(errorOf(builder), IsErrorAt(location + "/byteStride", "filter COLOR"));
+  MeshoptBuilder old;
+  old.meshopt(0)["filter"] = "COLOR";
+  EXPECT_THAT(errorOf(old), IsErrorAt("/bufferViews/0/extensions/EXT_meshopt_compression/filter", "COLOR"));
+}
+
+// Equal elements need two bits for each byte of a block of up to 256.
+TEST(GltfMeshopt, ReadsConstantVerticesInVersion1) {
+  MeshoptBuilder builder("KHR_meshopt_compression");
+  constexpr std::size_t kCount = 100000;
+  Stream stream{0xA1};
+  stream.resize(1 + (kCount + 255) / 256 * 3, 0xAA);  // all bytes of all blocks are those of the baseline
+  const float baseline[3] = {1, 2, 3};
+  Stream tail(24);
+  std::memcpy(tail.data() + 24 - 3 - 12, baseline, 12);
+  stream.insert(stream.end(), tail.begin(), tail.end());
+  const std::optional<Stream> elements = decodedVersion1(stream, kCount, 12);
+  ASSERT_TRUE(elements);
+  EXPECT_EQ(std::memcmp(elements->data() + 12 * (kCount - 1), baseline, 12), 0);
+  builder.addCompressed(stream, kCount, 12, "ATTRIBUTES");
+  builder.root["buffers"][0]["byteLength"] = builder.binary.size();
+  builder.root["buffers"][1]["byteLength"] = kCount * 12;
+  builder.root["accessors"][0]["bufferView"] = 2;
+  EXPECT_EQ(builder.load().meshes[0].geometries[0].positions[7], vec3(1, 2, 3));
+  builder.meshopt(2)["count"] = 3 * kCount;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/bufferViews/2/extensions/KHR_meshopt_compression/count", "cannot hold"));
 }
 
 }  // namespace
