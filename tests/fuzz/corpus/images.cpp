@@ -32,11 +32,13 @@ void addKtx2Formats(std::vector<Seed>& seeds) {
   }
 }
 
-// Basis Universal with every kind of symbol of BasisLZ, and a block of each mode of UASTC.
+// Basis Universal with every kind of symbol of BasisLZ, and arbitrary blocks of UASTC.
 void addBasisUniversal(std::vector<Seed>& seeds) {
   std::mt19937 random(1);
   for (unsigned i = 0; i < 16; ++i) {
-    io::test::BasisLzImage image{.width = 1 + random() % 60, .height = 1 + random() % 60};
+    io::test::BasisLzImage image;
+    image.width = static_cast<std::uint32_t>(1 + random() % 60);
+    image.height = static_cast<std::uint32_t>(1 + random() % 60);
     image.gray = i % 4 == 1, image.rawSelectors = i % 4 == 2, image.skewed = i % 2 == 1;
     image.historySize = i % 3 * 7;
     image.fill(random, 1 + random() % 40, 1 + random() % 40, 1 + i % 2);
