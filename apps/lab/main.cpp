@@ -99,13 +99,13 @@ int serve(const cli::LabOptions& request) {
   Server server = makeServer(project, std::move(options), request);
   writeFile("-", server.url() + "\n");
   cli::printMessage(fmt::format("{}; press Ctrl-C to stop", printable(project.description())));
-  for (const std::string& warning :
-       {server.exposure(),
-        request.noSandbox ? "shaders are not contained (--no-sandbox)" : sandboxGaps(sandboxSupport()),
-        project.hasHomeFolder()
-            ? "the project contains your home folder: a shader that takes over the process of its page "
-              "can read all your files; use a folder of its own"
-            : ""})
+  const std::string home = project.hasHomeFolder()
+                               ? "the project contains your home folder: a shader that takes over the "
+                                 "process of its page can read all your files; use a folder of its own"
+                               : "";
+  const std::string gaps =
+      request.noSandbox ? "shaders are not contained (--no-sandbox)" : sandboxGaps(sandboxSupport());
+  for (const std::string& warning : {server.exposure(), gaps, home})
     if (!warning.empty()) cli::printMessage("warning: " + warning);
   if (!request.noOpen) openBrowser(server.urlForBrowser());
   server.run();

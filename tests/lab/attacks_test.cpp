@@ -336,8 +336,9 @@ TEST_F(LabAttack, WorkersAreContained) {
   const auto isOwn = [&](const char* kind) {
     return namespaceOf(std::to_string(worker), kind) != namespaceOf("self", kind);
   };
-  if (support.namespaces)
+  if (support.namespaces) {
     for (const char* kind : {"user", "pid", "net", "ipc", "mnt"}) EXPECT_TRUE(isOwn(kind)) << kind;
+  }
   std::ifstream file("/proc/" + std::to_string(worker) + "/limits");
   const std::string limits{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(limits, ::testing::ContainsRegex("Max core file size +0 "));
