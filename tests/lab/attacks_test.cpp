@@ -148,7 +148,7 @@ TEST_F(LabAttack, DeepFilesAreErrors) {
   EXPECT_EQ(opens({{"scene", "deep.scene.toml"}}).at("event"), "error");
   EXPECT_EQ(opens({{"program", "folder"}}).at("event"), "error");
   opens({{"program", "if.rt.glsl"}});
-  EXPECT_EQ(opens({}).at("event"), "done");
+  EXPECT_EQ(opens(Json::object()).at("event"), "done");
   for (const Json& event : page.events()) EXPECT_NE(event.value("state", ""), "crashed") << event;
 }
 
@@ -267,7 +267,8 @@ TEST_F(LabAttack, AFileGivesNoAccessToItsFolder) {
   save(program("#include \"named.glsl\""));
   const LabProcess server(folder_ / "project/mine.rt.glsl", {"--size", "16x9", "--spp", "1"});
   std::vector<std::string> names;
-  for (const Json& file : server.request("GET", "/api/files").json().at("files")) names.push_back(file.at("path"));
+  const Json list = server.request("GET", "/api/files").json();
+  for (const Json& file : list.at("files")) names.push_back(file.at("path"));
   EXPECT_THAT(names, ElementsAre("mine.rt.glsl", "named.glsl"));
   for (const char* name : {"other.txt", "other.glsl"}) {
     const Reply read = server.request("GET", std::string("/api/files/") + name);
