@@ -137,12 +137,16 @@ TEST_F(LabAttack, DeepFilesAreErrors) {
   save(program("#if " + std::string(200'000, '(') + "1" + std::string(200'000, ')') + "\n#endif"), "if.rt.glsl");
   const LabProcess server = start();
   PageClient page(server);
+  int id = 100;
   const auto opens = [&](const Json& names) {
     Json message = open();
     message.update(names);
+    message["id"] = ++id;
     page.send(message);
-    return page.waitFor(
-        [](const Json& event) { return event.value("event", "") == "error" || event.value("event", "") == "done"; });
+    return page.waitFor([&](const Json& event) {
+      const std::string name = event.value("event", "");
+      return (name == "error" || name == "done") && event.contains("id") && event.at("id") == id;
+    });
   };
   EXPECT_EQ(opens({{"scene", "deep.gltf"}}).at("event"), "error");
   EXPECT_EQ(opens({{"scene", "deep.scene.toml"}}).at("event"), "error");
