@@ -84,7 +84,7 @@ test("a command shows the program of a different lesson beside the page, and a b
   await page.locator(".version-label", { hasText: /^lessons\/06_mirror_loop$/ }).waitFor();
   await page.getByRole("button", { name: "Back to the lesson" }).click();
   await page.locator(".program-title", { hasText: "07_mirror_recursion" }).waitFor();
-  await page.locator(".version-label", { hasText: "The lesson's program" }).waitFor();
+  await page.locator(".version-label", { hasText: "Original" }).waitFor();
 });
 
 test("commands that describe a pipeline show it, and those without an equivalent can be copied", async () => {
@@ -134,7 +134,7 @@ test("a solution and a reset keep the student's version, in the history of the e
   await task.getByRole("button", { name: "Reset" }).click();
   await page.getByRole("dialog").getByRole("button", { name: "Reset" }).click();
   await page.locator(".cm-line", { hasText: "payload.reflectance = reflectance;" }).waitFor();
-  await page.locator(".version-label", { hasText: "The lesson's program" }).waitFor();
+  await page.locator(".version-label", { hasText: "Original" }).waitFor();
   // Also after the page was closed, when the editors have no history.
   await waitForSaved(page);
   await page.reload();

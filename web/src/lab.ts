@@ -720,7 +720,8 @@ export class Lab {
   private showFindings(): void {
     const [first, ...others] = this.diagnostics.filter(isRunFinding);
     this.findings.hidden = !first;
-    if (first) this.findings.textContent = `⚠ ${first.text}${others.length > 0 ? `, and ${others.length} more` : ""}`;
+    // Problems has the rest of the text.
+    if (first) this.findings.textContent = `⚠ ${first.text.replace(/;.*$/, "")}${others.length > 0 ? `, and ${others.length} more` : ""}`;
   }
 
   private showStatus(): void {

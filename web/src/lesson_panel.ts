@@ -207,7 +207,7 @@ export class LessonPanel {
     }
     const solution = this.solutions().find(({ files }) => sameFiles(files, own));
     const kept = this.versions.find(own);
-    const label = sameFiles(Object.fromEntries(filesOf(this.original)), own) ? "The lesson's program" : (solution?.label ?? (kept ? `Your version, ${timeText(kept.time)}` : "Your version"));
+    const label = sameFiles(Object.fromEntries(filesOf(this.original)), own) ? "Original" : (solution?.label ?? (kept ? `Your version, ${timeText(kept.time)}` : "Your version"));
     if (this.versionLabel.textContent !== label) this.versionLabel.textContent = this.versionLabel.title = label;
   }
 
@@ -218,7 +218,7 @@ export class LessonPanel {
     const own = this.ownFiles;
     return [
       { label: "Keep this version", disabled: !own || this.isKept(own), run: () => own && this.keep("kept") },
-      item("The lesson's program", "original", Object.fromEntries(filesOf(original))),
+      item("Original", "the lesson's program", Object.fromEntries(filesOf(original))),
       ...this.versions.list.map((version) => item(timeText(version.time), version.label, version.files)),
     ];
   }
