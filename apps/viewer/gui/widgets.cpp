@@ -146,9 +146,9 @@ bool vectorField(const char* label, double* values, int count, const NumberRange
     std::copy_n(shown.begin(), count, values);
   }
   // A narrow panel cuts the numbers.
-  const std::string values = count > 1 ? fullValues(shown, count) : std::string();
-  const std::string separator = help.empty() || values.empty() ? "" : "\n";
-  return endRow(label, id, std::string(help) + separator + values, changed);
+  const std::string all = count > 1 ? fullValues(shown, count) : std::string();
+  const std::string separator = help.empty() || all.empty() ? "" : "\n";
+  return endRow(label, id, std::string(help) + separator + all, changed);
 }
 
 bool numberField(const char* label, double& value, const NumberRange& range, std::string_view help) {

@@ -15,7 +15,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr std::size_t kTreeRows = 10;  // of the tree
+constexpr std::size_t kListRows = 10;  // of the tree
 
 // Rows whose names contain `filter`, and those alone if there are many.
 template <class Name>
@@ -110,7 +110,7 @@ void scenePanel(ViewState& state) {
   for (const std::size_t count : {scene.instances.size(), scene.materials.size(), scene.lights.size()})
     rows += count > 0 ? count + 1 : 0;
   const float height =
-      static_cast<float>(std::clamp(rows, std::size_t{3}, kTreeRows)) * ImGui::GetTextLineHeightWithSpacing();
+      static_cast<float>(std::clamp(rows, std::size_t{3}, kListRows)) * ImGui::GetTextLineHeightWithSpacing();
   ImGui::BeginChild("tree", {0, height + 2.0f * ImGui::GetStyle().WindowPadding.y}, true);
   if (treeGroup("Objects", scene.instances.size(), true)) {
     list(state, Selection::Kind::instance, scene.instances.size(), filter,
