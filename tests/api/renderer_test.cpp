@@ -276,7 +276,7 @@ TEST_F(ApiRenderer, RecoversFromAFailedRebuild) {
     EXPECT_THROW(renderer.film(), Error);
   }
   renderer.setTransform(2, Transform::translation({0, 1, 1}));
-  renderer.setFrame(2);
+  renderer.setFrame(0);
   renderer.setCamera(kCamera);
   renderer.setMaterial(0, scene_.material(0));
   EXPECT_EQ(renderer.render(4).samples, 4);
@@ -292,7 +292,7 @@ TEST_F(ApiRenderer, ReportsWarningsOfARebuild) {
   const auto isReported = testing::Contains(HasSubstr("no surfaces"));
   EXPECT_THAT(renderer.render(4).warnings, isReported);
   renderer.setMaterial(0, {.emissiveTexture = {.texture = 0}});  // a texture that is not on the device
-  renderer.setFrame(1);
+  renderer.setFrame(0);
   EXPECT_THAT(renderer.render(4).warnings, isReported);
   renderer.setMaterial(0, {.normalTexture = {.texture = 0}});  // not with this encoding
   EXPECT_FALSE(renderer.resume("missing.qfilm"));

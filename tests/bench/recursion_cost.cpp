@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/error.h"
+#include "gpu/driver_environment.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/runnable_program.h"
@@ -139,6 +140,7 @@ int main(int argc, char** argv) {
   quintet::bench::Options options;
   quintet::bench::declare(app, options);
   CLI11_PARSE(app, argc, argv);
+  quintet::gpu::prepareDriverEnvironment();  // before other threads exist
   try {
     return quintet::bench::run(options);
   } catch (const std::exception& error) {
