@@ -17,7 +17,7 @@ namespace {
 
 using glm::dvec3;
 
-const vec3 kRadiance(2.0f, 3.0f, 5.0f);
+const vec3 kEmitted(2.0f, 3.0f, 5.0f);
 
 // ∫ cos θ cos θ' exp(-σ r) / r² dA over the square of 2 m at this distance below a point with a normal downward. Its center is at x.
 double throughMedium(double distance, double x, double sigma) {
@@ -33,7 +33,7 @@ double throughMedium(double distance, double x, double sigma) {
 }
 
 // The square emitter of throughMedium() at a height.
-scene::Geometry square(float x, float z) { return quad({x - 1, -1, z}, {2, 0, 0}, {0, 2, 0}); }
+scene::Geometry squareEmitter(float x, float z) { return quad({x - 1, -1, z}, {2, 0, 0}, {0, 2, 0}); }
 
 scene::Material absorbing(scene::Material m, const vec3& sigma, float priority) {
   m.thickness = 1.0f;
@@ -50,10 +50,10 @@ scene::Material cloudy(const vec3& color, const vec3& sigma, float priority) {
   return absorbing(m, sigma, priority);
 }
 
-ImageOptions optionsFor(const char* program, std::uint32_t batches) {
+ImageOptions mediumOptions(const char* program, std::uint32_t batches) {
   ImageOptions options;
   options.program = program::loadProgram(program);
-  options.width = options.height = 4;
+  options.width = options.height = 8;
   options.batches = batches;
   options.set = {"bounces=20"};
   return options;
@@ -80,16 +80,17 @@ TEST(HiddenSurfaces, LightInASolidArrivesAtItsSurface) {
   const vec3 color(0.9f, 0.6f, 0.3f), sigma(0.1f, 0.5f, 0.0f);
   vec4 exact(0, 0, 0, 1);
   for (glm::length_t c = 0; c < 3; ++c)
-    exact[c] = static_cast<float>(double{kRadiance[c]} * double{color[c]} / double{kPi} *
+    exact[c] = static_cast<float>(double{kEmitted[c]} * double{color[c]} / double{kPi} *
                                   throughMedium(2.0, 0.5, double{sigma[c]}));
   for (const Hidden hidden : {Hidden::none, Hidden::one, Hidden::two, Hidden::ofTheSameMaterial}) {
     SceneBuilder scene;
-    scene.add(box({-30, -30, -3}, {30, 30, 0}), cloudy(color, sigma, 1.0f)).add(square(0.5f, -2), emitter(kRadiance));
+    scene.add(box({-30, -30, -3}, {30, 30, 0}), cloudy(color, sigma, 1.0f))
+        .add(squareEmitter(0.5f, -2), emitter(kEmitted));
     addHidden(scene, hidden);
     scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.001f));
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(testing::Message() << program << " " << static_cast<int>(hidden));
-      expectUniform(renderImage(scene, optionsFor(program, 64)), exact, {.error = 0.02, .rounding = 1e-3});
+      expectUniform(renderImage(scene, mediumOptions(program, 128)), exact, {.error = 0.02, .rounding = 1e-3});
     }
   }
 }
@@ -99,27 +100,27 @@ TEST(HiddenSurfaces, LightInASolidArrivesAtAFloor) {
   const vec3 color(0.8f, 0.5f, 0.9f), sigma(0.2f, 0.0f, 0.6f);
   vec4 exact(0, 0, 0, 1);
   for (glm::length_t c = 0; c < 3; ++c)
-    exact[c] = static_cast<float>(double{kRadiance[c]} * double{color[c]} / double{kPi} *
+    exact[c] = static_cast<float>(double{kEmitted[c]} * double{color[c]} / double{kPi} *
                                   std::exp(-2.5 * double{sigma[c]}) * throughMedium(2.0, 3.0, double{sigma[c]}));
   for (const Hidden hidden : {Hidden::none, Hidden::one}) {
     SceneBuilder scene;
     scene.add(box({-30, -30, -4}, {30, 30, 4}), absorbing(clearGlass(1.0f, 1.0f), sigma, 1.0f));
     scene.add(quad({-30, -30, -2.5f}, {60, 0, 0}, {0, 60, 0}), lambert(color))
-        .add(square(3.0f, -0.5f), emitter(kRadiance));
+        .add(squareEmitter(3.0f, -0.5f), emitter(kEmitted));
     addHidden(scene, hidden);
     scene.camera(orthographic({0, 0, 0}, {0, 0, -1}, 0.001f));
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(testing::Message() << program << " " << static_cast<int>(hidden));
-      expectUniform(renderImage(scene, optionsFor(program, 128)), exact, {.error = 0.04, .rounding = 1e-3});
+      expectUniform(renderImage(scene, mediumOptions(program, 512)), exact, {.error = 0.04, .rounding = 1e-3});
     }
   }
 }
 
 // Mean over the image, by batches.
-std::vector<Moments> meansOf(const SceneBuilder& scene, const char* program, std::uint32_t batches) {
+std::vector<Moments> imageMeans(const SceneBuilder& scene, const char* program, std::uint32_t batches) {
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment,
                              {.compiler = &testCompiler()});
-  const ImageOptions options = optionsFor(program, batches);
+  const ImageOptions options = mediumOptions(program, batches);
   render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras.at(0), options));
   std::vector<Moments> means(3);
   for (std::uint32_t i = 0; i < batches; ++i) {
@@ -127,14 +128,14 @@ std::vector<Moments> meansOf(const SceneBuilder& scene, const char* program, std
     glm::dvec3 sum(0.0);
     for (const vec4& pixel : renderer.film().downloadBatch(0)) sum += glm::dvec3(pixel);
     for (glm::length_t c = 0; c < 3; ++c)
-      means[static_cast<std::size_t>(c)].add(sum[c] / (16.0 * render::kBatchSamples));
+      means[static_cast<std::size_t>(c)].add(sum[c] / (64.0 * render::kBatchSamples));
   }
   return means;
 }
 
 void expectNaive(const SceneBuilder& scene, std::uint32_t batches, double error) {
-  const std::vector<Moments> tracer = meansOf(scene, "pathtracer", batches),
-                             naive = meansOf(scene, "naive", 4 * batches);
+  const std::vector<Moments> tracer = imageMeans(scene, "pathtracer", batches),
+                             naive = imageMeans(scene, "naive", 4 * batches);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_GT(pValue(tracer[c], naive[c], 1e-4 * naive[c].mean()), sidak(0.001, 3))
         << tracer[c].mean() << " instead of " << naive[c].mean() << ", channel " << c;
@@ -150,7 +151,7 @@ TEST(HiddenSurfaces, RoughGlassShowsWhatNaiveShows) {
     scene::Material glass = absorbing(clearGlass(1.5f, 1.0f), vec3(0.1f, 0.2f, 0.3f), 1.0f);
     glass.roughness = 0.7f;
     SceneBuilder scene;
-    scene.add(box({-30, -30, -3}, {30, 30, 0}), glass).add(square(0.3f, -2), emitter(kRadiance));
+    scene.add(box({-30, -30, -3}, {30, 30, 0}), glass).add(squareEmitter(0.3f, -2), emitter(kEmitted));
     addHidden(scene, hidden);
     scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.001f));
     expectNaive(scene, 128, 0.03);
@@ -165,7 +166,7 @@ TEST(HiddenSurfaces, ScatteringMediaShowWhatNaiveShows) {
     fog.multiscatterColor = vec3(0.8f);
     fog.scatterAnisotropy = 0.3f;
     SceneBuilder scene;
-    scene.add(box({-30, -30, -4}, {30, 30, 0}), fog).add(square(1.5f, -2), emitter(kRadiance));
+    scene.add(box({-30, -30, -4}, {30, 30, 0}), fog).add(squareEmitter(1.5f, -2), emitter(kEmitted));
     addHidden(scene, hidden);
     scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.001f));
     expectNaive(scene, 128, 0.04);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -62,7 +63,7 @@ void addArmature(GltfBuilder& builder, const Json& primitives) {
   builder.add("skins", {{"joints", {kJoint, kOtherJoint}}});
 }
 
-scene::Geometry joined(scene::Geometry a, const scene::Geometry& b) {
+scene::Geometry joinedGeometry(scene::Geometry a, const scene::Geometry& b) {
   const auto count = static_cast<std::uint32_t>(a.positions.size());
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
   a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
@@ -71,7 +72,7 @@ scene::Geometry joined(scene::Geometry a, const scene::Geometry& b) {
 }
 
 // Three boxes of 2 m in a row. The first two are one primitive and follow a joint each; the third has no joints.
-AnimationBuilder boxes() {
+AnimationBuilder threeBoxes() {
   AnimationBuilder builder;
   builder.add("materials",
               {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
@@ -83,7 +84,7 @@ AnimationBuilder boxes() {
   const scene::Geometry left = box({-5, -1, -1}, {-3, 1, 1});
   std::vector<std::uint8_t> joints(left.positions.size(), 0);
   joints.resize(2 * joints.size(), 1);
-  const Json first = primitiveOf(builder, joined(left, box({-1, -1, -1}, {1, 1, 1})), joints);
+  const Json first = primitiveOf(builder, joinedGeometry(left, box({-1, -1, -1}, {1, 1, 1})), joints);
   const Json second = primitiveOf(builder, box({3, -1, -1}, {5, 1, 1}), {});
   addArmature(builder, Json::array({first, second}));
   return builder;
@@ -132,7 +133,7 @@ std::vector<Mirrored> mirroredRigs() {
 
 TEST(MirroredSkin, AtRestStaysFilled) {
   for (const Mirrored& rig : mirroredRigs()) {
-    AnimationBuilder builder = boxes();
+    AnimationBuilder builder = threeBoxes();
     for (const auto& [node, scale] : rig.scales) builder.root["nodes"][static_cast<std::size_t>(node)]["scale"] = scale;
     expectFilled(builder.load(), {0}, rig.what);
   }
@@ -140,7 +141,7 @@ TEST(MirroredSkin, AtRestStaysFilled) {
 
 // The inverse bind matrix of a rig that was bound while it was mirrored: the vertices are not mirrored.
 TEST(MirroredSkin, DependsOnTheInverseBindMatrices) {
-  AnimationBuilder builder = boxes();
+  AnimationBuilder builder = threeBoxes();
   builder.root["nodes"][kArmature]["scale"] = {1, 1, -1};
   std::vector<float> bind;
   for (int joint = 0; joint < 2; ++joint) bind.insert(bind.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1});
@@ -151,7 +152,7 @@ TEST(MirroredSkin, DependsOnTheInverseBindMatrices) {
 // From the first frame on, and from 0.5 s on.
 TEST(MirroredSkin, InAnAnimationStaysFilled) {
   for (const Mirrored& rig : mirroredRigs()) {
-    AnimationBuilder builder = boxes();
+    AnimationBuilder builder = threeBoxes();
     builder.addChannel(kJoint, "translation", {0, 1}, {0, 0, 0, 0, 0, 0});
     AnimationBuilder later = builder;
     for (const auto& [node, scale] : rig.scales) {
@@ -168,7 +169,7 @@ TEST(MirroredSkin, InAnAnimationStaysFilled) {
 // Two nodes share the mesh; one of their skins mirrors.
 TEST(MirroredSkin, SharesMeshes) {
   for (const bool animated : {false, true}) {
-    AnimationBuilder builder = boxes();
+    AnimationBuilder builder = threeBoxes();
     const int joint = builder.add("nodes", {{"scale", {1, 1, -1}}});
     const int skin = builder.add("skins", {{"joints", {joint, joint}}});
     builder.add("nodes", {{"mesh", 0}, {"skin", skin}, {"scale", {1, 1, -1}}, {"translation", {0, 0, 20}}});
@@ -235,7 +236,7 @@ std::vector<vec4> renderBumps(const scene::Scene& scene, double frame) {
   return renderer.film().downloadBatch(0);
 }
 
-double largestDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+double largestColorDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
     for (glm::length_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}));
@@ -249,13 +250,13 @@ TEST(MirroredSkin, HasTheTangentFramesOfAMirroredObject) {
     AnimationBuilder rigid = skinned, plain = bumpySquare(tangents), animated = skinned;
     rigid.root["nodes"][kMeshNode].erase("skin");
     const std::vector<vec4> expected = renderBumps(rigid.load(), 0);
-    EXPECT_GT(largestDifference(renderBumps(plain.load(), 0), expected), 0.1) << "symmetric";
-    EXPECT_LT(largestDifference(renderBumps(skinned.load(), 0), expected), 1e-3) << tangents;
+    EXPECT_GT(largestColorDifference(renderBumps(plain.load(), 0), expected), 0.1) << "symmetric";
+    EXPECT_LT(largestColorDifference(renderBumps(skinned.load(), 0), expected), 1e-3) << tangents;
     animated.addChannel(kJoint, "translation", {0, 1}, {0, 0, 0, 0, 0, 0});
-    EXPECT_LT(largestDifference(renderBumps(animated.loadAnimated(), 12), expected), 1e-3) << tangents;
+    EXPECT_LT(largestColorDifference(renderBumps(animated.loadAnimated(), 12), expected), 1e-3) << tangents;
     AnimationBuilder later = bumpySquare(tangents);
     later.addChannel(kArmature, "scale", {0, 0.5f}, {1, 1, 1, -1, 1, 1}, "STEP");
-    EXPECT_LT(largestDifference(renderBumps(later.loadAnimated(), 13), expected), 1e-3) << tangents;
+    EXPECT_LT(largestColorDifference(renderBumps(later.loadAnimated(), 13), expected), 1e-3) << tangents;
   }
 }
 

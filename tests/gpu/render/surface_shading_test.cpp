@@ -192,14 +192,14 @@ TEST(SurfaceShading, AppliesNormalMapsInTheTangentFrame) {
   }
 }
 
-struct Frame {
+struct TangentFrame {
   vec3 normal, tangent, bitangent;  // of the front side
   vec2 uv;
 };
 
-std::vector<Frame> framesOf(const scene::Scene& scene, const std::vector<Query>& points) {
+std::vector<TangentFrame> framesOf(const scene::Scene& scene, const std::vector<Query>& points) {
   const LightScene device(scene, {});
-  return runCompute<Frame>(R"(
+  return runCompute<TangentFrame>(R"(
     #include <quintet/surface.glsl>
     struct Query { vec2 barycentric; vec3 wo; };
     struct Answer { vec3 normal, tangent, bitangent; vec2 uv; };
@@ -214,7 +214,7 @@ std::vector<Frame> framesOf(const scene::Scene& scene, const std::vector<Query>&
       return Answer(s.frontFace ? s.shadingNormal : -s.shadingNormal, s.tangent, s.bitangent, s.uvs[0] + s.uvs[1]);
     }
   )",
-                           points, points.size(), device.options());
+                                  points, points.size(), device.options());
 }
 
 // Without tangents, and with tangents along the normal: the frame is orthonormal, right-handed, and the same from both sides.
@@ -248,9 +248,9 @@ TEST(SurfaceShading, MakesFramesWithoutTangents) {
       } else {
         g.tangents.clear();
       }
-      const std::vector<Frame> frames = framesOf(scene, points);
+      const std::vector<TangentFrame> frames = framesOf(scene, points);
       for (std::size_t i = 0; i < count; ++i) {
-        const Frame& f = frames[i];
+        const TangentFrame& f = frames[i];
         ASSERT_NEAR(glm::length(f.tangent), 1.0f, 1e-5f);
         ASSERT_NEAR(glm::dot(f.tangent, f.normal), 0.0f, 1e-5f);
         const bool right = !along || glm::determinant(mat3(c.worldFromObject)) > 0.0f;

@@ -112,6 +112,8 @@ std::vector<std::string> messagesOf(const std::string& program, const std::vecto
     std::string& line = result.emplace_back(program + '\t' + d.text);
     for (const auto& note : d.related) line += " | " + note.text;
     std::ranges::replace(line, '\n', ' ');
+    static const std::regex kFolder("[^ '(\t]*/([A-Za-z0-9_.]+:[0-9])");
+    line = std::regex_replace(line, kFolder, "$1");
   }
   return result;
 }

@@ -84,13 +84,13 @@ TEST(PlanCells, GivesAHundredthOfTheMeanVarianceToTilesWithoutNoise) {
 // Each cell reaches half of its tile's allowed margin: batches ≥ margin² · variance / (2 · target)².
 TEST(PlanCells, LimitsTheErrorOfEachTile) {
   std::vector<double> variances(64, 1e-6);
-  variances[5] = 4.0;
+  variances[5] = 40.0;
   const ErrorEstimate estimate = estimateOf(variances);
   ErrorSums sums;
   sums.add(estimate.cells[10]);
   const std::vector<std::uint32_t> plan = planCells(estimate, {0.5, 0});
-  EXPECT_GE(plan[10], sums.marginSquared() * 4.0 / (4.0 * 0.25));
-  EXPECT_LE(plan[10], std::ceil(sums.marginSquared() * 4.0 / (4.0 * 0.25)) + 1);
+  EXPECT_GE(plan[10], sums.marginSquared() * 40.0 / (4.0 * 0.25));
+  EXPECT_LE(plan[10], std::ceil(sums.marginSquared() * 40.0 / (4.0 * 0.25)) + 1);
   EXPECT_EQ(plan[0], 8u) << "has enough";
 }
 
