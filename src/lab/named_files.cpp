@@ -49,11 +49,11 @@ void collectUris(const nlohmann::json& value, std::vector<std::string>& names) {
 
 // The JSON of a glTF file, which a binary one has in its first chunk.
 std::string gltfJson(const fs::path& file) {
-  constexpr std::size_t kHeader = 20, kLength = 12;
+  constexpr std::size_t kJsonOffset = 20, kLength = 12;
   std::ifstream stream(file, std::ios::binary);
-  std::string header(kHeader, '\0');
+  std::string header(kJsonOffset, '\0');
   stream.read(header.data(), static_cast<std::streamsize>(header.size()));
-  if (stream.gcount() != static_cast<std::streamsize>(kHeader) || !header.starts_with("glTF"))
+  if (stream.gcount() != static_cast<std::streamsize>(kJsonOffset) || !header.starts_with("glTF"))
     return readTextFile(file);
   std::string json(std::min<std::size_t>(integerAt(header, kLength, 4), kMaxText), '\0');
   stream.read(json.data(), static_cast<std::streamsize>(json.size()));

@@ -798,7 +798,8 @@ void contain(const WorkerSettings& settings, const fs::path& folder) {
   constexpr std::uint64_t kReserved = std::uint64_t{8} << 30;
   SandboxRules rules{.memory = settings.memory > 0 ? settings.memory + kReserved : 0};
   rules.readable.emplace_back(settings.folder);
-  for (const fs::path& root : FileRoots::fromEnvironment().folders()) rules.readable.push_back(root);
+  const FileRoots roots = FileRoots::fromEnvironment();
+  for (const fs::path& root : roots.folders()) rules.readable.push_back(root);
   if (const char* library = std::getenv("QUINTET_SHADER_PATH")) rules.readable.emplace_back(library);
   rules.writable.push_back(folder);
   // A cache that other programs use could contain code for them.

@@ -14,10 +14,10 @@ namespace quintet::program {
 namespace {
 
 // frameSize is the same in all frames.
-constexpr std::array<std::string_view, 6> kNames{"frameID",      "gsnGetPreviousPixel", "clockARB",
-                                                 "clock2x32ARB", "clockRealtimeEXT",    "clockRealtime2x32EXT"};
+constexpr std::array<std::string_view, 6> kNamesOfFrames{"frameID",      "gsnGetPreviousPixel", "clockARB",
+                                                         "clock2x32ARB", "clockRealtimeEXT",    "clockRealtime2x32EXT"};
 
-bool isNameOfFrame(std::string_view word) { return std::ranges::find(kNames, word) != kNames.end(); }
+bool isNameOfFrame(std::string_view word) { return std::ranges::find(kNamesOfFrames, word) != kNamesOfFrames.end(); }
 
 // A macro can contain the name, or join it from two parts.
 bool definesFrame(std::string_view directive) {
