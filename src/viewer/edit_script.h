@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/session_thread.h"
+#include "viewer/snapshot.h"
 
 namespace quintet::viewer {
 

@@ -2,6 +2,7 @@
 // The bars below the image: progress and values of a pixel, and the animation.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>

@@ -55,9 +55,9 @@ TEST_F(ProjectFolderTest, CanHaveSomeFilesOfItsFolder) {
   writeFile(path("private.txt"), "private");
   const ProjectFolder project(folder_.path() / "project", {"a.glsl", "lib/x.glsl"});
   const auto names = [&] {
-    std::vector<std::string> names;
-    for (const ProjectFolder::Entry& entry : project.list().files) names.push_back(entry.name);
-    return names;
+    std::vector<std::string> found;
+    for (const ProjectFolder::Entry& entry : project.list().files) found.push_back(entry.name);
+    return found;
   };
   EXPECT_THAT(names(), ::testing::ElementsAre("a.glsl", "lib/x.glsl"));
   EXPECT_EQ(project.read("lib/x.glsl"), "x");
