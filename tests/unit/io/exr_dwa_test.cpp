@@ -53,7 +53,7 @@ ExrImage brightImage(ExrType type) {
   return image;
 }
 
-const ExrChannel& find(const ExrImage& image, const std::string& name) {
+const ExrChannel& channelNamed(const ExrImage& image, const std::string& name) {
   return *std::ranges::find(image.channels, name, &ExrChannel::name);
 }
 
@@ -64,7 +64,7 @@ TEST(ExrDwaTest, WritesNoInfinityForFiniteValues) {
     std::size_t wrong = 0;
     for (const ExrChannel& channel : image.channels)
       for (std::size_t i = 0; i < channel.samples.size(); ++i)
-        wrong += std::isfinite(channel.samples[i]) && !std::isfinite(find(back, channel.name).samples[i]) &&
+        wrong += std::isfinite(channel.samples[i]) && !std::isfinite(channelNamed(back, channel.name).samples[i]) &&
                  (channel.name != "A" || c.type == ExrType::half);
     EXPECT_EQ(wrong, 0u) << exrCompressionNames()[static_cast<std::size_t>(c.compression)] << ":"
                          << c.level.value_or(-1.0f) << " tiles " << c.tileSize << " type " << static_cast<int>(c.type);
@@ -78,7 +78,7 @@ TEST(ExrDwaTest, KeepsTheValuesOfOtherBlocks) {
     const std::vector<std::byte> bytes = encodeExr(image, {compression});
     EXPECT_EQ(inspectExr(bytes, "a")[0].compression, exrCompressionNames()[static_cast<std::size_t>(compression)]);
     const ExrImage back = decodeExr(bytes, "a.exr");
-    const std::vector<float>&before = find(image, "G").samples, &after = find(back, "G").samples;
+    const std::vector<float>&before = channelNamed(image, "G").samples, &after = channelNamed(back, "G").samples;
     for (std::size_t y = 0; y < 16; ++y)
       for (std::size_t x = kWidth / 2 + 8; x < kWidth - 16; ++x)
         EXPECT_NEAR(after[y * kWidth + x], before[y * kWidth + x], 0.05f);
@@ -92,7 +92,7 @@ TEST(ExrDwaTest, UsesZipWhereNoLimitIsLowEnough) {
   const std::vector<std::byte> bytes = encodeExr(image, {ExrCompression::dwaa, 10000.0f});
   const std::string used = inspectExr(bytes, "a")[0].compression;
   if (used == "zip")
-    EXPECT_EQ(find(decodeExr(bytes, "a.exr"), "R").samples[3], 65504.0f);
+    EXPECT_EQ(channelNamed(decodeExr(bytes, "a.exr"), "R").samples[3], 65504.0f);
   else
     EXPECT_EQ(used, "dwaa");
 }
