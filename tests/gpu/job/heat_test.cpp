@@ -142,8 +142,9 @@ void expectBoxCounts(const RenderResult& result) {
   EXPECT_EQ(valuesOf(result, "heat_any_hit"), (Values{1, 0}));
   EXPECT_EQ(valuesOf(result, "heat_intersection"), (Values{1, 0}));
   const auto isTime = [](const render::FilmPlane& plane) { return plane.name == "heat_time"; };
-  if (std::ranges::any_of(result.film->planes(), isTime))
+  if (std::ranges::any_of(result.film->planes(), isTime)) {
     for (const float ticks : valuesOf(result, "heat_time")) EXPECT_GT(ticks, 0.0f);
+  }
 }
 
 TEST_F(HeatTest, CountsEachStage) { expectBoxCounts(render(boxRequest(6), boxProgram())); }
