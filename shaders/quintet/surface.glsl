@@ -109,7 +109,10 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
     const vec4 t = b.x * tangents.at[v.x] + b.y * tangents.at[v.y] + b.z * tangents.at[v.z];
     const vec3 world = rowsTimesVector(instance.worldFromObject, t.xyz);
     const float handedness = (t.w < 0.0 ? -1.0 : 1.0) * ((instance.flags & kInstanceMirrored) != 0u ? -1.0 : 1.0);
-    s.tangent = safeNormalize(world - n * dot(n, world), anyTangent(n));
+    const vec3 across = world - n * dot(n, world);
+    // Of a tangent along the normal only rounding errors remain.
+    const bool along = dot(across, across) <= 1e-10 * dot(world, world);
+    s.tangent = along ? anyTangent(n) : safeNormalize(across, anyTangent(n));
     s.bitangent = handedness * cross(n, s.tangent);
   } else {
     s.tangent = anyTangent(n);

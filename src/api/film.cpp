@@ -156,11 +156,11 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
   plan.request.layers = options.layers;
   if (plan.kind == output::FileKind::png) plan.request.pngBits = options.pngBits;
   if (plan.kind == output::FileKind::exr && options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
+  plan.request.exposure = options.exposure;
   output::checkMergeRequest(plan.request);
   if (plan.kind == output::FileKind::film && impl().result.accumulatesFrames)
     throw UsageError(
         fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
-  plan.request.exposure = options.exposure;
   if (!options.toneMap.empty()) {
     plan.request.toneMap = render::toneMapByName(options.toneMap);
     if (!plan.request.toneMap)

@@ -121,8 +121,7 @@ Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   constexpr std::uint32_t kCapacity = 32;  // recorded rays per pixel
   gpu::Context& context = scene.context();
   if (const std::string reason = whyNotComparable(scene.facts()); !reason.empty())
-    throw UsageError(fmt::format("{}: {}; --profile measures all scenes", setup.request.scene.string(), reason),
-                     Remedy::measureLaunches);
+    throw UsageError(fmt::format("{}: {}", setup.request.scene.string(), reason), Remedy::measureLaunches);
   const program::Program program = program::loadProgram(setup.request.program);
   const program::Program replay = program::loadProgram("replay");
   gpu::BufferOptions recordOptions;

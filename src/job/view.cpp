@@ -19,6 +19,7 @@
 #include "io/codec.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/model/limits.h"
+#include "scene/model/names.h"
 
 namespace quintet::job {
 namespace {
@@ -62,8 +63,8 @@ std::size_t findCamera(const scene::Scene& scene, const std::string& wanted) {
   const bool isIndex = error == std::errc{} && stop == end;
   if (isIndex && index < scene.cameras.size()) return index;
   if (scene.cameras.empty())
-    throw UsageError(fmt::format("camera '{}' not found: {} has no cameras", wanted, scene.name));
-  throw UsageError(fmt::format("camera '{}' not found in {}{}; available: {}", wanted, scene.name,
+    throw UsageError(fmt::format("camera '{}' not found: {} has no cameras", wanted, scene::nameForMessages(scene)));
+  throw UsageError(fmt::format("camera '{}' not found in {}{}; available: {}", wanted, scene::nameForMessages(scene),
                                isIndex ? "" : suggestion(wanted, names), listOfCameras(scene)));
 }
 

@@ -75,7 +75,7 @@ std::uint64_t fileRights(int version) {
 
 [[noreturn]] void fail(const char* what) {
   throw Error(
-      fmt::format("cannot restrict the process of the page ({}): {}; --no-sandbox starts the lab without the "
+      fmt::format("cannot restrict the process of the page ({}): {}; the lab can be started without the "
                   "restriction",
                   what, std::strerror(errno)));
 }

@@ -141,8 +141,8 @@ SessionSupervisor::Actions SessionSupervisor::workerExceeded(std::uint64_t limit
   if (state_ != State::running || !ended_.empty()) return actions;
   exceeded_ = true;
   ended_ = fmt::format(
-      "the program, its scene or the compiler needs more than {} of memory, the limit; quintet lab --max-memory raises "
-      "it",
+      "the program, its scene or the compiler needs more than {} of memory, the limit; "
+      "start the lab with a higher limit, or use less",
       bytesText(limit));
   actions.end = true;  // workerEnded() follows
   return actions;

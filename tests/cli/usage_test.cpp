@@ -60,7 +60,7 @@ TEST_F(Usage, UnknownOption) {
 
 TEST_F(Usage, MissingAndExcessArguments) {
   expectError(quintet({"render"}), 2, {"scene", "--help"});
-  expectError(quintet({"render", "scene.gltf", "more.gltf"}), 2, {"'more.gltf'"});
+  expectError(quintet({"info", "scene.gltf", "more.gltf"}), 2, {"'more.gltf'"});
   expectError(quintet({"render", "scene.gltf", "--spp"}), 2, {"--spp"});
   expectError(quintet({"compare", "a.png"}), 2, {"two images"});
 }
@@ -118,7 +118,7 @@ TEST_F(Usage, UnknownNames) {
   expectError(quintet(quick({"--tonemap", "acs"})), 2, {"--tonemap", "'acs'", "'aces'", "agx"});
   expectError(quintet({"render", "scene.gltf", "--program", "pathtracr"}), 2, {"'pathtracr'", "'pathtracer'"});
   expectError(quintet(quick({"--camera", "frnt"})), 2, {"'frnt'", "'front'"});
-  expectError(quintet(quick({"--camera", "7"})), 2, {"'7'", "0–1"});
+  expectError(quintet(quick({"--camera", "7"})), 2, {"'7'", "0 'front', 1 'side'"});
   expectError(quintet({"compare", "a", "b", "--metric", "flop"}), 2, {"--metric", "'flop'", "'flip'"});
 }
 

@@ -23,7 +23,8 @@ std::string optionHint(Remedy remedy) {
     case Remedy::renderRegion: return "; render a part of it with --region";
     case Remedy::selectLayer: return "; select it as a layer with --aov";
     case Remedy::allowDifference: return "; --may-differ NAME allows a difference";
-    case Remedy::measureLaunches: return "; use 'quintet bench PROGRAM SCENE' to measure the launches of the program";
+    case Remedy::measureLaunches:
+      return "; --profile measures all scenes, and 'quintet bench PROGRAM SCENE' the launches of the program";
     case Remedy::raiseMemoryLimit: return "; --max-memory raises it";
     case Remedy::allowExternal: return "; --allow-external permits it";
     case Remedy::omitTextures: return "; --missing-textures warn renders without it";

@@ -276,13 +276,24 @@ void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, c
   emitter.black = emitter.black && mean <= 0.0f;
 }
 
+// Whether rays meet all of an instance with this material, whatever its alpha.
+bool isForcedOpaque(const scene::Scene& scene, std::size_t material) {
+  const auto index = static_cast<int>(material);
+  return std::ranges::any_of(scene.instances, [&](const scene::Instance& instance) {
+    if ((instance.flags & scene::kInstanceForceOpaque) == 0 || instance.mesh == scene::kNone) return false;
+    const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    return std::ranges::find(mesh.geometries, index, &scene::Geometry::material) != mesh.geometries.end() ||
+           std::ranges::any_of(mesh.primitiveSets, [&](const scene::PrimitiveSet& set) { return uses(set, index); });
+  });
+}
+
 // The material with its largest emission during the animation, so that each triangle that can emit is a light.
 scene::Material brightestState(const scene::Scene& scene, std::size_t material) {
   scene::Material brightest = scene.materials[material];
   if (material < scene.materialStates.size() && !scene.materialStates[material].empty()) {
     for (const scene::Material& state : scene.materialStates[material])
       brightest.emissive = glm::max(brightest.emissive, state.emissive);
-  } else if (scene::isInvisible(brightest)) {
+  } else if (scene::isInvisible(brightest) && !isForcedOpaque(scene, material)) {
     brightest.emissive = vec3(0.0f);
   }
   return brightest;

@@ -147,7 +147,7 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
       fail("{}: the transform of texture {} is not finite", name, use.texture);
   }
   const auto checkRange = [&](float value, float min, float max, const char* property) {
-    if (!(value >= min && value <= max)) fail("{}.{}: {} is not in [{}, {}]", name, property, value, min, max);
+    if (!(value >= min && value <= max)) fail("{}.{}: {:g} is not in [{:g}, {:g}]", name, property, value, min, max);
   };
   const auto checkUnit = [&](float value, const char* property) { checkRange(value, 0.0f, 1.0f, property); };
   constexpr float kLargest = std::numeric_limits<float>::max();

@@ -9,6 +9,7 @@
 #include "scene/geometry/repair.h"
 #include "scene/geometry/shapes.h"
 #include "scene/geometry/tangents.h"
+#include "scene/model/limits.h"
 #include "scene/toml/context.h"
 #include "scene/toml/transform.h"
 
@@ -144,7 +145,9 @@ void readMesh(SceneTomlContext& context, const TomlValue& table) {
   const mat4 transform = readTransform(reader);
   if (transform != mat4(1.0f)) applyTransform(geometry, transform);
   for (const vec3& p : geometry.positions)
-    if (!isFinite(p)) reader.fail(*source, fmt::format("{} is too large", reader.what()));
+    if (!isWithinLimits(p))
+      reader.fail(*source,
+                  fmt::format("{} is too large: its coordinates can be at most {:g}", reader.what(), kMaxCoordinate));
   const std::size_t mesh = static_cast<std::size_t>(context.meshFor(reader, name, false));
   reader.rejectUnknownKeys();
   repairNormals(geometry);

@@ -52,9 +52,9 @@ TEST(InstrumentedRun, NamesTheLineThatMadeAValueNotFinite) {
   const program::Program program = program::parseLecture(
       "float half_(float x) { return 0.5 * x; }\n"
       "void main() { /**** RAY GENERATION SHADER ****/\n"
-      "  float x = float(gl_LaunchIDEXT.x) - 3.0;\n"
+      "  float x = float(gl_LaunchIDEXT.x) - 3.0, y = float(2u * gl_LaunchIDEXT.x) - 6.0;\n"  // x / x may become 1
       "  float ratio = x\n"
-      "    / x;\n"
+      "    / y;\n"
       "  vec3 color = vec3(half_(ratio));\n"
       "  gsnSetPixel(vec4(color, 1.0)); }\n",
       "demo.rt.glsl", "here");

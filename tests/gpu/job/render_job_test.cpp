@@ -272,11 +272,14 @@ class MediumJobTest : public RenderJobTest {
         "metallic = 0\nroughness = 0\nior = 1\ntransmission = 1\nthickness = 1\n"
         "attenuation_color = [0.5, 0.25, 1]\nattenuation_distance = 2\n";
     const std::string sky = "[environment]\ncolor = [1, 1, 1]\n";
-    write("moves", "[[material]]\nname = \"glass\"\n" + glass +
-                       cube("keyframes = [{ frame = 0, translate = [9, 0, 0] }, { frame = 24 }]\n") + sky);
+    write("moves",
+          "[[material]]\nname = \"glass\"\n" + glass +
+              cube("keyframes = [{ frame = 0, translate = [9, 0, 0] }, { frame = 24, translate = [0, 0, 0] }]\n",
+                   "material = \"glass\"\n") +
+              sky);
     write("becomes", "[[material]]\nname = \"glass\"\n" + glass +
                          "keyframes = [{ frame = 0, transmission = 0 }, { frame = 24, transmission = 1 }]\n" +
-                         cube("") + sky);
+                         cube("", "material = \"glass\"\n") + sky);
     write("sky", cube("translate = [9, 0, 0]\n") + sky +
                      "keyframes = [{ frame = 0, intensity = 0 }, { frame = 24, intensity = 3 }]\n");
   }
@@ -284,8 +287,8 @@ class MediumJobTest : public RenderJobTest {
     writeFile(folder_ / (name + ".scene.toml"),
               text + "[[camera]]\nlook_from = [0, 0, 0]\nlook_at = [0, 0, -1]\nfov = 1\n");
   }
-  static std::string cube(const std::string& instance) {
-    return "[[mesh]]\nname = \"box\"\nshape = \"cube\"\n[[instance]]\nof = \"box\"\n" + instance;
+  static std::string cube(const std::string& instance, const std::string& mesh = "") {
+    return "[[mesh]]\nname = \"box\"\nshape = \"cube\"\n" + mesh + "[[instance]]\nof = \"box\"\n" + instance;
   }
   RenderRequest requestFor(const std::string& scene) {
     RenderRequest request = makeRequest(4);

@@ -80,8 +80,10 @@ void expectMasks(const std::vector<Mask>& masks, Kind kind) {
                                     << masks[i].cutoff);
     const float x = kDistance * static_cast<float>(i);
     const vec3 above = colorSeen(device, "pathtracer", {x, 0, 4}), below = colorSeen(device, "pathtracer", {x, 0, 1});
-    EXPECT_NEAR(above.x, masks[i].visible ? 0.0f : 1.0f, 1e-4f);
-    EXPECT_NEAR(below.x, masks[i].visible ? 0.0f : 1.0f, 1e-4f);
+    // Where the lamp shines, light sampling also selects the other shields. It seldom does, which is the noise.
+    const float red = masks[i].visible ? 0.0f : 1.0f, tolerance = masks[i].visible ? 1e-4f : 0.15f;
+    EXPECT_NEAR(above.x, red, tolerance);
+    EXPECT_NEAR(below.x, red, tolerance);
     if (masks[i].visible) {
       EXPECT_EQ(above.z, 0.5f);
       const float least = kind == Kind::trees ? -1.0f : 0.01f;  // trees are found by chance

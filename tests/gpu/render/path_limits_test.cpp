@@ -95,10 +95,11 @@ Moments luminanceOf(const SceneBuilder& scene, const ImageOptions& options) {
 
 void expectMeanWithoutRoulette(const SceneBuilder& scene, const std::vector<std::string>& set,
                                const std::string& what) {
-  const Moments a = luminanceOf(scene, limitedOptions("pathtracer", {"bounces=6", "roulette_start=1000"}, 256));
+  constexpr std::uint32_t kBatches = 512;
+  const Moments a = luminanceOf(scene, limitedOptions("pathtracer", {"bounces=6", "roulette_start=1000"}, kBatches));
   std::vector<std::string> changed{"bounces=6"};
   changed.insert(changed.end(), set.begin(), set.end());
-  const Moments b = luminanceOf(scene, limitedOptions("pathtracer", changed, 256));
+  const Moments b = luminanceOf(scene, limitedOptions("pathtracer", changed, kBatches));
   EXPECT_GT(pValue(a, b, 1e-4 * a.mean()), 1e-3) << what << ": " << b.mean() << " instead of " << a.mean();
   EXPECT_LT(a.standardError(), 0.015 * a.mean()) << what << ": not sensitive";
   EXPECT_LT(b.standardError(), 0.015 * b.mean()) << what << ": not sensitive";

@@ -71,7 +71,7 @@ TEST(GroupsFile, DescribesRecordsInTheirOrder) {
 
 TEST(GroupsFile, NamesTheJsonPathOfErrors) {
   EXPECT_THAT(errorOf("{"), HasSubstr("groups.json: byte 2: this is not valid JSON"));
-  EXPECT_THAT(errorOf("// \"\n" + std::string(200000, '[')), HasSubstr("line 2, column 256: more than 256 nested"));
+  EXPECT_THAT(errorOf("// \"\n" + std::string(200000, '[')), HasSubstr("line 2, column 257: more than 256 nested"));
   EXPECT_THAT(errorOf("[]"), AllOf(HasSubstr("groups.json: /: "), HasSubstr("must be an object")));
   EXPECT_THAT(errorOf("{}"), HasSubstr("'ray_generation' is missing"));
   EXPECT_THAT(errorOf(R"({"ray_generation": "a", "mis": []})"), HasSubstr("/mis: unknown member 'mis' (did you mean"));

@@ -115,6 +115,9 @@ std::vector<std::string> messagesOf(const std::string& program, const std::vecto
     static const std::regex kFolder("[^ '(\t]*/([A-Za-z0-9_.]+:[0-9])");
     line = std::regex_replace(line, kFolder, "$1");
   }
+  std::ranges::sort(result);  // as in messages.txt, where a message of several stages is one line
+  const auto repeated = std::ranges::unique(result);
+  result.erase(repeated.begin(), repeated.end());
   return result;
 }
 

@@ -105,7 +105,7 @@ TEST_F(LiveCheckTest, ARemovedProgramCanReturn) {
   live.run(recorder_);
   fs::remove_all(program_);
   EXPECT_THAT(live.watcher().wait(kLong), testing::Not(IsEmpty()));
-  EXPECT_TRUE(live.run(recorder_).wrongRequest());
+  EXPECT_THAT(idsOf(live.run(recorder_)), ElementsAre("FILE demo"));
   writeProgram(folder_ / "new");
   fs::rename(folder_ / "new", program_);
   EXPECT_THAT(live.watcher().wait(kLong), testing::Not(IsEmpty()));

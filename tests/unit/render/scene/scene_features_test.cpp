@@ -26,7 +26,8 @@ std::vector<std::byte> veil(std::uint32_t channels) {
   const int positions = builder.addAccessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   builder.root["accessors"][static_cast<std::size_t>(positions)]["min"] = {0, 0, 0};
   builder.root["accessors"][static_cast<std::size_t>(positions)]["max"] = {1, 1, 0};
-  builder.addMesh({{"attributes", {{"POSITION", positions}}}, {"material", 0}});
+  const int uvs = builder.addAccessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
+  builder.addMesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"material", 0}});
   return builder.glb();
 }
 

@@ -111,7 +111,7 @@ TEST(Validate, ReportsTheFirstError) {
   EXPECT_THAT(faultOf([](auto& s) { s.lights[0].position.x = -1e30f; }), IsErrorAt("scene: lights[0]", "above 1e+18"));
   EXPECT_THAT(faultOf([](auto& s) { s.lights[0].intensity.x = 1e13f; }), IsErrorAt("scene: lights[0]", "1e+12"));
   EXPECT_THAT(faultOf([](auto& s) { s.materials[0].emissive.x = 1e13f; }),
-              IsErrorAt("scene: materials[0]", "emissive"));
+              IsErrorAt("scene: materials[0].emissive", "1e+12"));
   EXPECT_THAT(faultOf([](auto& s) { s.environment.constant.x = INFINITY; }), IsErrorAt("scene: environment", "1e+12"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[1].mesh = 1; }), IsErrorAt("scene: instances[1] 'b'.mesh", "1 of 1"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[1].worldFromObject[3].x = INFINITY; }),

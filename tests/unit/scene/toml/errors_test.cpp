@@ -61,7 +61,7 @@ const Mistake kMistakes[] = {
     {"[[spheres]]\nitems = [{ radius = 1e-30, scale = 1e-30 }]\n", 2, {"items[0]", "[[spheres]]", "inverse"}},
     {"[[spheres]]\nitems = [{ center = [0, 0] }]\n", 2, {"'center'", "items[0]", "[[spheres]]", "3 numbers"}},
     {"[[spheres]]\nrandom = { count = 10 }\n", 2, {"'random'", "[[spheres]]", "'box'"}},
-    {"[[spheres]]\nrandom = { count = 1e3, box = [[0,0,0],[1,1,1]] }\n",
+    {"[[spheres]]\nrandom = { count = 1e9, box = [[0,0,0],[1,1,1]] }\n",
      2,
      {"'count'", "'random'", "[[spheres]]", "268435456"}},
     {"[[spheres]]\ngrid = { count = [100000, 100000, 1], spacing = 1 }\n",
