@@ -12,6 +12,7 @@
 
 #include "../render/scene_builder.h"
 #include "base/error.h"
+#include "infinite_sky.h"
 #include "job/explanation_json.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
@@ -446,8 +447,8 @@ TEST(PixelExplainer, NestsTheRaysOfRecursion) {
 TEST(PixelExplainer, StatesThatASampleWasDiscarded) {
   RenderRequest request = smallRequest();
   request.environment.source = "2,2,2";
-  request.environment.intensity = 3e38f;  // the radiance is infinite
-  const PixelExplanation e = explain(program::loadProgram("naive"), {32, 0}, 0, request);
+  const quintet::test::InfiniteSky program;
+  const PixelExplanation e = explain(program::loadProgram(program.path()), {32, 0}, 0, request);
   EXPECT_TRUE(e.discarded);
   EXPECT_EQ(e.outputs[0].value, vec4(0.0f)) << "nothing was added";
   EXPECT_TRUE(std::isinf(sumContributions(e).x));
