@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/defaults/auto_camera.h"
+#include "scene/model/limits.h"
 #include "scene/toml/context.h"
 #include "scene/toml/keyframes.h"
 
@@ -51,7 +52,8 @@ Camera cameraOf(TomlReader& reader, const CameraKeys& keys, bool orthographic) {
   camera.orthographic = orthographic;
   if (orthographic) camera.orthographicHalfSize = 0.5f * keys.size;
   for (int column = 0; column < 4; ++column)
-    if (!isFinite(vec3(camera.worldFromCamera[column]))) reader.fail(fmt::format("{} is too far away", reader.what()));
+    if (!isWithinLimits(vec3(camera.worldFromCamera[column])))
+      reader.fail(fmt::format("{} is too far away", reader.what()));
   return camera;
 }
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "scene/animation/keyframes.h"
+#include "scene/model/limits.h"
 
 namespace quintet::scene {
 namespace {
@@ -216,6 +217,9 @@ void checkInvertible(const TomlReader& reader, const TomlValue& at, const mat4& 
   const dmat4 m(matrix);
   if (!isFinite(matrix) || glm::determinant(glm::dmat3(m)) == 0.0 || !isFinite(mat4(glm::inverse(m))))
     reader.fail(at, fmt::format("the transform of {} has no inverse", reader.what()));
+  if (!isWithinLimits(matrix))
+    reader.fail(at, fmt::format("{} is too large or too far away: the numbers of its transform can be at most {:g}",
+                                reader.what(), kMaxCoordinate));
 }
 
 mat4 matrixOf(const Placement& placement) {

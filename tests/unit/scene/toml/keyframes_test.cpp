@@ -174,7 +174,7 @@ TEST(SceneKeyframes, StayFinite) {
       "[[light]]\ntype = 'point'\nposition = [0, 0, 0]\ninterpolation = 'cubic'\nkeyframes = [{ time = 0 },\n"
       "{ time = 1e9, position = [1e38, 0, 0], color = [1e12, 0, 0], in_tangent = { position = [-1e38, 0, 0] } }]\n"
       "[[mesh]]\nname = 'q'\nshape = 'quad'\n[[instance]]\nof = 'q'\ninterpolation = 'cubic'\n"
-      "keyframes = [{ time = 0, translate = [3e38, 0, 0] }, { time = 1, translate = [-3e38, 0, 0] }]\n");
+      "keyframes = [{ time = 0, translate = [1e18, 0, 0] }, { time = 1, translate = [-1e18, 0, 0] }]\n");
   for (const double time : {0.5, 0.4e9, 0.9e9, 1e9}) {
     EXPECT_TRUE(isFinite(lightIn(scene, time).position)) << time;
     EXPECT_TRUE(isFinite(lightIn(scene, time).intensity)) << time;
