@@ -53,7 +53,8 @@ Camera cameraOf(TomlReader& reader, const CameraKeys& keys, bool orthographic) {
   if (orthographic) camera.orthographicHalfSize = 0.5f * keys.size;
   for (int column = 0; column < 4; ++column)
     if (!isWithinLimits(vec3(camera.worldFromCamera[column])))
-      reader.fail(fmt::format("{} is too far away", reader.what()));
+      reader.fail(
+          fmt::format("{} is too far away: its coordinates can be at most {:g}", reader.what(), kMaxCoordinate));
   return camera;
 }
 

@@ -129,7 +129,8 @@ void readLight(SceneTomlContext& context, const TomlValue& table) {
     states.push_back(readKeys(list.table(i), kind, i == 0 ? keys : states.back()));
   Light light = lightOf(keys, kind);
   light.name = name;
-  if (!isWithinLimits(light.position)) reader.fail(fmt::format("{} is too far away", reader.what()));
+  if (!isWithinLimits(light.position))
+    reader.fail(fmt::format("{} is too far away: its coordinates can be at most {:g}", reader.what(), kMaxCoordinate));
   light.values = addTracks(context, reader, list, tracksOf(states, kind));
   context.scene.lights.push_back(std::move(light));
 }
