@@ -264,7 +264,7 @@ TEST_F(Merge, OverwritesNoSamplesWithoutForce) {
   const std::vector<std::byte> other = bytesOf("other.qfilm");
   expectError(merge({"a.qfilm", "b.qfilm"}, "other.qfilm"), 1, {"other.qfilm: ", "seed 1, expected 0", "--force"});
   expectError(merge({"a.qfilm"}, "b.qfilm"), 1, {"b.qfilm: ", "samples 16–29", "--force"});
-  expectError(merge({"a.qfilm"}, "scene.gltf.qfilm", {"-q", "-o", "scene.gltf"}), 2, {"-o"});
+  expectError(merge({"a.qfilm"}, "scene.gltf.qfilm", {"-q", "-o", "scene.gltf"}), 2, {"scene.gltf: ", ".qfilm"});
   expectMerged({"a.qfilm", "b.qfilm"}, "a.qfilm");  // it has all samples of the file
   EXPECT_EQ(bytesOf("other.qfilm"), other);
   expectMerged({"a.qfilm"}, "other.qfilm", {"-q", "--force"});
