@@ -106,6 +106,11 @@ Container readFrom(const Descriptor& in, const struct stat& info, const fs::path
   return data;
 }
 
+int openToRead(const fs::path& file) {
+  return file == kStandardInput ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
 // What was read from standard input, pipes and sockets, which give their bytes only once. A file is often read twice, for
 // example to find its format.
 class Streams {
@@ -115,12 +120,15 @@ class Streams {
     return streams;
   }
 
-  // Other threads wait until the stream ends.
-  std::shared_ptr<const FileBytes> read(const Descriptor& in, const struct stat& info, const fs::path& file,
-                                        MemoryBudget& budget) {
+  // Other threads wait until the stream ends. A stream is opened once: opening a named pipe again would wait for a
+  // second writer.
+  std::shared_ptr<const FileBytes> read(const struct stat& info, const fs::path& file, MemoryBudget& budget) {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<const FileBytes>& known = bytes_[{info.st_dev, info.st_ino}];
-    if (!known) known = std::make_shared<FileBytes>(readFrom<FileBytes>(in, info, file, budget));
+    if (known) return known;
+    const Descriptor in(openToRead(file));
+    if (!in) failReading(file, errno);
+    known = std::make_shared<FileBytes>(readFrom<FileBytes>(in, info, file, budget));
     return known;
   }
 
@@ -132,15 +140,16 @@ class Streams {
 template <class Container>
 Container readAll(const fs::path& file, MemoryBudget& budget) {
   const bool standardInput = file == kStandardInput;
-  const Descriptor in(standardInput ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                                    : ::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat info {};
-  if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
+  if ((standardInput ? ::fstat(STDIN_FILENO, &info) : ::stat(file.c_str(), &info)) != 0) failReading(file, errno);
   if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
-  if (!standardInput && !S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode))
+  if (!standardInput && !S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode)) {
+    const Descriptor in(openToRead(file));
+    if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
     return readFrom<Container>(in, info, file, budget);
+  }
 
-  const std::shared_ptr<const FileBytes> bytes = Streams::instance().read(in, info, file, budget);
+  const std::shared_ptr<const FileBytes> bytes = Streams::instance().read(info, file, budget);
   try {
     budget.take(bytes->size());
     using Value = typename Container::value_type;

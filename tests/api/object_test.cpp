@@ -246,7 +246,7 @@ TEST(ApiMessages, TexturesNeedCoordinates) {
 }
 
 TEST(ApiMessages, ErrorsOfOneKindHaveOneType) {
-  for (const char* missing : {"missing.rt.glsl", "./missing", "/tmp/missing.rt.glsl", "/tmp/missing"})
+  for (const char* missing : {"missing.rt.glsl", "./missing", "/missing/program.rt.glsl", "/missing/program"})
     EXPECT_THROW(Program::load(missing), FileError) << missing;
   EXPECT_THROW(Program::load("pathtracr"), UsageError) << "a name of a built-in program";
   EXPECT_THROW(Film::merge({}), UsageError);

@@ -51,8 +51,7 @@ TEST_F(Input, BrokenSceneFile) {
 }
 
 // `-`, /dev/stdin and named pipes give the same image as the file.
-// Its shell does not end: the writer of the named pipe keeps the output of the process open.
-TEST_F(Input, DISABLED_ScenesFromPipes) {
+TEST_F(Input, ScenesFromPipes) {
   ASSERT_EQ(quintet(quick({"-o", "file.png"})).status, 0);
   const auto from = [&](const std::string& scene, const std::string& shell) {
     RunOptions options;
