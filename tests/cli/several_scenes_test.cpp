@@ -100,8 +100,7 @@ TEST_F(SeveralScenes, ContinueAfterACrash) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "red.png"));
 }
 
-// Does not end yet: the process of the second scene starts while the first one still spins.
-TEST_F(SeveralScenes, DISABLED_ContinueAfterALaunchThatDoesNotEnd) {
+TEST_F(SeveralScenes, ContinueAfterALaunchThatDoesNotEnd) {
   writeSkyProgram(folder_ / "loop", "payload.color = vec3(0.5);");
   write(folder_ / "loop" / "sky.rgen", R"(#version 460
 #extension GL_EXT_ray_tracing : require

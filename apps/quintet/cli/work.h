@@ -30,7 +30,7 @@ void clearWorkResults();  // they are printed, or the command starts over
 // Of a command that works on several scenes, so that a new process continues after a scene that has ended the first one.
 void sceneBegins(std::size_t scene, std::string_view name);
 void sceneEnds(std::size_t scene, bool failed);
-void scenesEnd();  // the command ends for a reason that applies to all scenes
+void scenesEnd();  // the command ends: no new process continues, even if the last scene has ended a process
 
 struct SceneProgress {
   std::vector<std::size_t> failed;  // with the one that has not ended

@@ -167,6 +167,7 @@ int renderScenes(std::span<const std::filesystem::path> scenes, std::span<const 
     scenesEnd();
     throw;
   }
+  scenesEnd();
   std::vector<std::size_t> failed = before.failed;
   failed.insert(failed.end(), result.failed.begin(), result.failed.end());
   if (!failed.empty()) printFailure(job::failedScenesText(scenes, failed), kRuntimeError);
