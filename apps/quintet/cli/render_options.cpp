@@ -133,7 +133,8 @@ void declareFrames(OptionTable& table, RenderTexts& texts, RenderOptions& option
                       "A-B or A:B renders only frames A to B of an animated scene",
               .target = &texts.frames},
              {.names = "--all-frames",
-              .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
+              .help = "Write out.0000.png and so on also for a program that averages its frames itself; #### "
+                      "or %04d in the name does the same",
               .target = &options.output.everyFrame},
              {.names = "--crf",
               .value = "N",
@@ -214,7 +215,8 @@ void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options)
       "Camera",
       {{.names = "--camera",
         .value = "NAME",
-        .help = "Index or name of a camera in the file (default: the first, else automatic)",
+        .help = "Name of a camera in the file or of its glTF node, or index; 'quintet info' lists them (default: the "
+                "first, else automatic)",
         .target = &options.request.camera.name},
        {.names = "--look-from", .value = "X,Y,Z", .help = "Position of the camera, meters", .target = &texts.lookFrom},
        {.names = "--look-at",
