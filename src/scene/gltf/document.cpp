@@ -193,7 +193,9 @@ std::string withoutOverflows(std::string_view text) {
     if (!inString && text[i] >= '0' && text[i] <= '9') {
       end = std::min(text.find_first_not_of("0123456789.eE+-", i), text.size());
       const std::string number(text.substr(i, end - i));
-      result += std::isinf(std::strtod(number.c_str(), nullptr)) ? kLargest : std::string_view(number);
+      char* stop = nullptr;
+      const bool overflows = std::isinf(std::strtod(number.c_str(), &stop)) && *stop == '\0';  // "1e999-1" is no number
+      result += overflows ? kLargest : std::string_view(number);
     } else {
       result += text.substr(i, end - i);
     }
@@ -204,11 +206,13 @@ std::string withoutOverflows(std::string_view text) {
 
 json parseDocument(const std::filesystem::path& file, std::string_view text) {
   constexpr JsonLimits kLimits{.bytes = std::string_view::npos};  // the budget limits the size
+  std::string replaced;
   try {
     try {
       return parseJson(file, text, kLimits);
     } catch (const json::out_of_range&) {
-      return parseJson(file, withoutOverflows(text), kLimits);
+      text = replaced = withoutOverflows(text);
+      return parseJson(file, text, kLimits);
     }
   } catch (const json::parse_error& error) {
     throw FileError(file, lineAndColumn(text, error.byte), "invalid JSON: " + printable(withoutLocation(error.what())));

@@ -86,6 +86,9 @@ TEST(GltfContainer, ReportsJsonErrorsByLine) {
   EXPECT_THAT(errorOfText("{\n  \"asset\": {\"version\": }\n}"), IsErrorAt("line 2, column 24", "JSON"));
   EXPECT_THAT(errorOfText("{\"a\": 1"), IsErrorAt("line 1, column 7", "JSON"));
   EXPECT_THAT(errorOfText("{\"asset\": {\"version\": \"2.0\"},\n \"scene\": 1e999}"), IsErrorAt("/scene", "integer"));
+  EXPECT_THAT(errorOfText("{\"a\": 1e999,\n \"b\": }"), IsErrorAt("line 2, column 7", "JSON"));
+  EXPECT_THAT(errorOfText("{\"asset\": {\"version\": \"2.0\"}, \"extras\": [1e999-1]}"),
+              IsErrorAt("line 1, column 42", "1e999"));
   EXPECT_THAT(errorOfText("{\"a\": \"\xFF\"}"), HasSubstr("JSON"));
 }
 
