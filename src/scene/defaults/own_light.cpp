@@ -209,10 +209,10 @@ struct World {
 // Whether the emission of a part, or the light of other parts, makes the point lit.
 bool isLit(const World& world, const Distribution& emitters, std::size_t receiver, const Point& point) {
   if (point.part->surface->emission >= kLitRadiance) return true;
+  const double jitter = quasirandom(receiver).y;
   double irradiance = 0.0;
   for (std::size_t e = 0; e < kEmitters; ++e) {
     const std::size_t index = receiver * kEmitters + e;
-    const double jitter = quasirandom(receiver).y;
     const Point light = emitters.at((static_cast<double>(e) + jitter) / kEmitters, index);
     const glm::dvec3 to = light.position - point.position;
     const double square = glm::dot(to, to);
@@ -235,6 +235,7 @@ struct Emission {
 Emission emissionOf(const Scene& scene) {
   Emission result;
   for (const Instance& instance : scene.instances) {
+    if (instance.mask == 0) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     for (const Geometry& geometry : mesh.geometries)
       result.any = result.any || emission(scene, geometry.material) > 0.0f;

@@ -144,6 +144,8 @@ TEST_F(OwnLightOf, EmissiveSolidCounts) {
   scene_.meshes.push_back(mesh);
   scene_.instances.emplace_back().mesh = 0;
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission);
+  scene_.instances[0].mask = 0;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::none) << "hidden";
 }
 
 TEST_F(OwnLightOf, DegenerateSurfacesAreNotCounted) {
