@@ -177,9 +177,8 @@ std::string wrongEnvironment(std::string_view driver, bool hasAvx512) {
     std::from_chars(driver.data() + label + kLabel.size(), driver.data() + driver.size(), version);
   if (version == 0 || version >= kCorrectLlvm) return "";
   return fmt::format(
-      "LLVM {} computes wrong values with AVX-512; call quintet::prepareDrivers() before the program starts threads, "
-      "or "
-      "start it with {}={}",
+      "LLVM {} computes wrong values with AVX-512; call quintet::prepareDrivers() before the program starts "
+      "threads, or start it with {}={}",
       version, kCpuCaps, kWithoutAvx512);
 }
 

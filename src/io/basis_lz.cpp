@@ -180,8 +180,8 @@ class SliceReader {
   // The blocks in rows.
   std::vector<BlockIndices> read(std::size_t columns, std::size_t rows) {
     std::vector<BlockIndices> blocks(columns * rows);
-    std::vector<std::uint32_t> below((columns + 1) /
-                                     2);  // predictions for the second row of each group of 2 x 2 blocks
+    // Predictions for the second row of each group of 2 x 2 blocks.
+    std::vector<std::uint32_t> below((columns + 1) / 2);
     std::uint32_t predictions = 0, endpoint = 0;
     for (std::size_t y = 0; y < rows; ++y)
       for (std::size_t x = 0; x < columns; ++x) {

@@ -64,9 +64,8 @@ std::string repairTexels(io::Image& image) {
   });
   if (count == 0) return {};
   return fmt::format(
-      "{} {} NaN, infinite or above {:g}: NaN replaced by 0, other values clamped; {} ({}, {}), counted from the top "
-      "left "
-      "corner",
+      "{} {} NaN, infinite or above {:g}: NaN replaced by 0, other values clamped; {} ({}, {}), counted from the "
+      "top left corner",
       counted(count.load(), "pixel"), nounFor(count.load(), "is", "are"), kMaxRadiance,
       count == 1 ? "it is at" : "the first is at", first % image.width, first / image.width);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures of meshes from memory need texture coordinates. Files are read with (0, 0) in their place and report it.
+// Textures of meshes from memory need texture coordinates. In files, textures without them are ignored and reported
+// (geometry/texture_coordinates.h).
 #ifndef QUINTET_SCENE_MODEL_TEXTURE_COORDINATES_H
 #define QUINTET_SCENE_MODEL_TEXTURE_COORDINATES_H
 

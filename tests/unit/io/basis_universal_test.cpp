@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Basis Universal in KTX2: ETC1S with BasisLZ, and UASTC. The hashes are those of the pixels of the reference transcoder
-// (basis_transcoder.wasm of npm's three 0.187.0, format RGBA32); tests/basis compares with it byte for byte.
+// (basis_transcoder.wasm of npm's three 0.187.0, format RGBA32); basis_reference_test.cpp compares every byte with it.
 #include <array>
 #include <cstring>
 #include <random>
