@@ -88,6 +88,7 @@ int serve(const cli::LabOptions& request) {
   options.idleSeconds = request.idle;
   options.contained = !request.noSandbox;
   options.memory = request.maxMemory ? request.maxMemory : machineMemory() / 2;
+  options.memoryHint = cli::optionHint(Remedy::raiseMemoryLimit);
   options.worker = fs::read_symlink("/proc/self/exe");
   options.page = embeddedPage();
   options.defaults = {.program = target.program,
@@ -126,6 +127,8 @@ int main(int argc, char** argv) {
     if (arguments.size() == 1 && arguments.front() == lab::kWorkerOption) return lab::runWorker(lab::kWorkerSocket);
     const std::optional<cli::LabOptions> options = cli::parseLabOptions(arguments);
     return options ? lab::serve(*options) : 0;
+  } catch (const lab::SandboxError& error) {
+    return cli::reportFailure(error, cli::FailureJson::none, "; --no-sandbox starts the lab without the restriction");
   } catch (const std::exception& error) {
     return cli::reportFailure(error, cli::FailureJson::none);
   }

@@ -228,7 +228,8 @@ void PageSession::waitForEnd(const std::shared_ptr<Worker>& worker) {
 // Beside the limit of the kernel, which is that of allocated memory, and less exact.
 void PageSession::checkMemory() {
   const std::uint64_t limit = options_.settings.memory;
-  if (worker_ && limit > 0 && workerMemory(worker_->process) > limit) perform(supervisor_.workerExceeded(limit));
+  if (worker_ && limit > 0 && workerMemory(worker_->process) > limit)
+    perform(supervisor_.workerExceeded(limit, options_.memoryHint));
 }
 
 void PageSession::tick() {

@@ -33,6 +33,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
     WorkerSettings settings;
     const ProjectFolder* project = nullptr;  // of `settings`; its files can become more
     double idleSeconds = 600;
+    std::string memoryHint;       // ServerOptions::memoryHint
     bool accepted = true;         // false: too many sessions are open
     std::function<void()> onEnd;  // called once, after the WebSocket is closed and the worker has ended
   };

@@ -27,7 +27,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/parallel.h"
@@ -74,10 +73,7 @@ std::uint64_t fileRights(int version) {
 }
 
 [[noreturn]] void fail(const char* what) {
-  throw Error(
-      fmt::format("cannot restrict the process of the page ({}): {}; the lab can be started without the "
-                  "restriction",
-                  what, std::strerror(errno)));
+  throw SandboxError(fmt::format("cannot restrict the process of the page ({}): {}", what, std::strerror(errno)));
 }
 
 class FileRules {

@@ -11,7 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+
 namespace quintet::lab {
+
+// The process cannot be restricted, although the kernel offers it.
+class SandboxError : public Error {
+ public:
+  using Error::Error;
+};
 
 // What this kernel, or the container around this process, offers.
 struct SandboxSupport {
@@ -31,7 +39,7 @@ struct SandboxRules {
 };
 
 // Restricts this process, which has one thread, and all that it starts. Parts that the kernel does not offer are skipped. In a
-// process of clone() with namespaceFlags(), it also hides the other processes. Throws Error.
+// process of clone() with namespaceFlags(), it also hides the other processes. Throws SandboxError.
 void enterSandbox(const SandboxRules& rules);
 
 // Flags of clone() for a process in namespaces of its own.

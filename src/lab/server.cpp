@@ -203,6 +203,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     options.settings.defaults = site_.options.defaults;
     options.project = &site_.project;
     options.idleSeconds = site_.options.idleSeconds;
+    options.memoryHint = site_.options.memoryHint;
     options.accepted = site_.sessions.size() < site_.options.defaults.maxSessions;
     auto key = std::make_shared<PageSession*>(nullptr);
     options.onEnd = [&site = site_, key] { site.sessions.erase(*key); };

@@ -26,6 +26,7 @@ struct ServerOptions {
   std::string token;                  // empty means a random one
   bool contained = true;              // workers are in a sandbox (sandbox.h)
   std::uint64_t memory = 0;           // bytes that a worker can use; 0: no limit
+  std::string memoryHint;             // the end of the message about this limit, which names what raises it
   std::filesystem::path worker;       // executable that runs workers (worker_process.h)
   std::span<const EmbeddedFile> page;
   LabDefaults defaults;

@@ -136,14 +136,12 @@ SessionSupervisor::Actions SessionSupervisor::tick(double now) {
   return actions;
 }
 
-SessionSupervisor::Actions SessionSupervisor::workerExceeded(std::uint64_t limit) {
+SessionSupervisor::Actions SessionSupervisor::workerExceeded(std::uint64_t limit, std::string_view hint) {
   Actions actions;
   if (state_ != State::running || !ended_.empty()) return actions;
   exceeded_ = true;
-  ended_ = fmt::format(
-      "the program, its scene or the compiler needs more than {} of memory, the limit; "
-      "start the lab with a higher limit, or use less",
-      bytesText(limit));
+  ended_ = fmt::format("the program, its scene or the compiler needs more than {} of memory, the limit{}",
+                       bytesText(limit), hint);
   actions.end = true;  // workerEnded() follows
   return actions;
 }

@@ -50,8 +50,8 @@ class SessionSupervisor {
     compiling_ = false;
   }
   Actions workerEnded(double now, const WorkerEnd& end);
-  // It uses more memory than it may.
-  Actions workerExceeded(std::uint64_t limit);
+  // It uses more memory than it may. `hint`: the end of the message, which names what raises the limit.
+  Actions workerExceeded(std::uint64_t limit, std::string_view hint);
   // The system could not start a worker. The next command of the page tries again.
   Actions workerMissing(const std::string& message);
   // Call it about once per second.

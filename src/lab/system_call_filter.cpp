@@ -19,7 +19,7 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "lab/sandbox.h"
 
 namespace quintet::lab {
 namespace {
@@ -171,7 +171,7 @@ class Filter {
   void install() {
     sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
     if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0)
-      throw Error(fmt::format("cannot limit the system calls of the process: {}", std::strerror(errno)));
+      throw SandboxError(fmt::format("cannot limit the system calls of the process: {}", std::strerror(errno)));
   }
 
  private:

@@ -10,7 +10,7 @@ namespace quintet::lab {
 bool hasSystemCallFilter();
 
 // For this thread, later ones, and all processes that they start. Denied calls fail with EPERM; those that a caller can replace with
-// ENOSYS. `ownSignals`: signals can be sent to this process only. Throws Error.
+// ENOSYS. `ownSignals`: signals can be sent to this process only. Throws SandboxError.
 void filterSystemCalls(bool ownSignals);
 
 }  // namespace quintet::lab

@@ -357,7 +357,8 @@ TEST_F(LabAttack, WorkersEndAtTheLimitOfTheirMemory) {
   PageClient page(server);
   page.send(open());
   const Json hung = page.waitForWorker("hung", 60);
-  EXPECT_THAT(hung.at("message").get<std::string>(), HasSubstr("more than 20.0 MiB of memory"));
+  EXPECT_THAT(hung.at("message").get<std::string>(),
+              HasSubstr("more than 20.0 MiB of memory, the limit; --max-memory"));
   EXPECT_EQ(server.request("GET", "/api/files").status, 200u);
 }
 

@@ -52,15 +52,14 @@ TEST_F(SessionSupervisorTest, StartsAWorkerForThePage) {
 
 TEST_F(SessionSupervisorTest, EndsAWorkerThatNeedsTooMuchMemory) {
   open();
-  const auto actions = supervisor_.workerExceeded(std::uint64_t{1} << 30);
+  const auto actions = supervisor_.workerExceeded(std::uint64_t{1} << 30, "; --max-memory raises it");
   EXPECT_TRUE(actions.end);
-  EXPECT_FALSE(supervisor_.workerExceeded(1).end);  // it is ending
+  EXPECT_FALSE(supervisor_.workerExceeded(1, "").end);  // it is ending
   const auto ended = supervisor_.workerEnded(3, {.signal = SIGKILL});
   EXPECT_TRUE(ended.hold) << "the same program would need as much again";
   EXPECT_THAT(states(ended), ElementsAre("hung", "waiting"));
-  EXPECT_THAT(ended.toPage.front(), HasSubstr("needs more than 1.0 GiB of memory"));
-  EXPECT_THAT(ended.toPage.front(), HasSubstr("--max-memory"));
-  EXPECT_TRUE(supervisor_.workerExceeded(1).end);
+  EXPECT_THAT(ended.toPage.front(), HasSubstr("needs more than 1.0 GiB of memory, the limit; --max-memory raises it"));
+  EXPECT_TRUE(supervisor_.workerExceeded(1, "").end);
   const auto again = supervisor_.workerEnded(4, {.signal = SIGKILL});
   EXPECT_FALSE(again.start) << "the limit is too low for any program";
   EXPECT_THAT(states(again), ElementsAre("hung"));
