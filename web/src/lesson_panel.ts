@@ -99,7 +99,7 @@ export class LessonPanel {
   private lessons: readonly Lesson[] = [];
   private current: Lesson | undefined;
   private chosen: Lesson | undefined; // that is being opened
-  private running: AbortController | undefined; // of the check of a task
+  private leaving = new AbortController(); // aborts checks and comparisons when another lesson is shown
   private original: ProgramText | undefined; // the program of the lesson
   private versions = new LessonVersions("");
   private readonly versionLabel = h("span", { class: "version-label", role: "status" });
@@ -154,7 +154,8 @@ export class LessonPanel {
   async show(lesson: Lesson | undefined): Promise<void> {
     this.current = lesson;
     this.chosen = undefined;
-    this.running?.abort();
+    this.leaving.abort();
+    this.leaving = new AbortController();
     this.showList();
     if (!lesson) return;
     replace(this.body, h("p", { class: "empty" }, "Loading…"));
@@ -167,7 +168,7 @@ export class LessonPanel {
       const original = await api.program(lesson.program);
       if (this.current === lesson) this.original = original;
     } catch (error) {
-      replace(this.body, h("p", { class: "empty" }, (error as Error).message));
+      if (this.current === lesson) replace(this.body, h("p", { class: "empty" }, (error as Error).message));
       return;
     }
     if (this.current !== lesson) return;
@@ -329,13 +330,12 @@ export class LessonPanel {
   }
 
   private async compare(files: readonly string[], result: HTMLElement): Promise<void> {
-    const lesson = this.current;
-    const running = (this.running = new AbortController());
+    const { signal } = this.leaving;
     replace(result, h("p", {}, "Rendering both images…"));
     try {
       const runs = await Promise.all(files.map((file) => this.comparedRun(file)));
-      const outcome = await compareRuns(runs[0]!, runs[1]!, running.signal);
-      if (this.current === lesson && !running.signal.aborted) this.showResult(result, outcome, ["First", "Second"], true);
+      const outcome = await compareRuns(runs[0]!, runs[1]!, signal);
+      if (!signal.aborted) this.showResult(result, outcome, ["First", "Second"], true);
     } catch (error) {
       replace(result, h("p", { class: "failed" }, (error as Error).message));
     }
@@ -444,11 +444,11 @@ export class LessonPanel {
     const setDone = () => element.classList.toggle("done", this.doneTasks(lesson).has(task.id));
     const check = h("button", { type: "button", class: "primary task-check" }, "Check");
     check.addEventListener("click", async () => {
-      const running = (this.running = new AbortController());
+      const { signal } = this.leaving;
       this.enableChecks(false);
       replace(result, h("p", {}, "Rendering your program and the solution…"));
-      const outcome = await this.check(lesson, task, running.signal);
-      if (running.signal.aborted) return; // another lesson is shown
+      const outcome = await this.check(lesson, task, signal);
+      if (signal.aborted) return; // another lesson is shown
       this.enableChecks(true);
       if (outcome.passed) this.markDone(lesson, task);
       setDone();
