@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/plural.h"
 #include "base/text.h"
 #include "gpu/device_list.h"
 #include "gpu/error.h"
@@ -24,6 +23,7 @@
 #include "job/identity.h"
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
+#include "job/scene_notes.h"
 #include "program/heat.h"
 #include "render/scene/camera.h"
 #include "scene/animation/animated_bounds.h"
@@ -92,43 +92,6 @@ std::string lossText(std::size_t device, const Error& error) {
   return fmt::format("device {} of the list was lost: {}; the others render without it", device + 1, error.what());
 }
 
-// States which environment was chosen for a scene without one, and how to choose another.
-void describeLight(const std::string& scene, scene::OwnLight light, Observer& observer) {
-  switch (light) {
-    case scene::OwnLight::none:
-      observer.note(fmt::format(
-          "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", scene));
-      break;
-    case scene::OwnLight::faint:
-      observer.note(
-          fmt::format("{}: the emissive surfaces leave most of the scene dark, using the default environment (the "
-                      "environment 'none' disables it)",
-                      scene));
-      break;
-    case scene::OwnLight::emission:
-      observer.note(fmt::format(
-          "{}: emissive surfaces light the scene, using no environment (the environment 'default' adds one)", scene));
-      break;
-    case scene::OwnLight::punctual: break;
-  }
-}
-
-void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& observer) {
-  const std::string& name = job.scene.name;
-  // Lecture programs bring their own lights.
-  if (loaded.environment.decidedBy && !job.accumulatesFrames())
-    describeLight(name, *loaded.environment.decidedBy, observer);
-  if (!loaded.environment.repair.empty()) observer.warning(loaded.environment.repair);
-  if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
-  const scene::Report& report = loaded.scene.report;
-  if (!report.animations.empty() && !loaded.scene.nodeAnimation)
-    observer.note(fmt::format("{}: rendered in its rest pose; the file has {}", name,
-                              counted(report.animations.size(), "animation")));
-  if (!report.isExact())
-    observer.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' lists them", name, report.ignored.size(),
-                              report.repaired.size(), shellQuoted(job.scene.path())));
-}
-
 }  // namespace
 
 RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer) : engine_(engine), job_(std::move(job)) {
@@ -189,7 +152,7 @@ void RenderJob::prepare(Observer& observer) {
     observer.stage("loading " + job_.scene.name);
     LoadedScene loaded = loading->finish();
     checkMemoryFor(renderedSize(request, loaded.size));
-    describeScene(loaded, job_, observer);
+    noteScene(loaded, job_, observer);
     prepareScene(std::move(loaded), observer);
   }
   observer.stage(kCompilingStage);
