@@ -9,7 +9,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <string>
@@ -24,17 +23,29 @@ struct Work {
   std::array<char, 4096> file{};
   std::array<char, 1 << 16> watched{};        // 'd' for a folder or 'f' for a file, path, '\0'; ends with '\0'
   std::atomic<std::uint64_t> resultBytes{0};  // of complete lines in the file of results
+  std::array<char, 4096> scene{};             // the one that was started last
+  std::atomic<std::uint64_t> sceneCount{0};   // scenes that were started
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 Work* work = nullptr;
-int results = -1;  // a file in memory; negative if there is none
+// Files in memory; negative if there is none.
+int results = -1;
+int sceneStates = -1;  // a SceneState for each scene that was started
+
+enum class SceneState : unsigned char { begun, ended, failed };
+static_assert(sizeof(SceneState) == 1);
 
 template <std::size_t N>
 void assign(std::array<char, N>& target, std::string_view text) {
   const std::size_t length = std::min(text.size(), N - 1);
   target[length] = '\0';
   std::memcpy(target.data(), text.data(), length);
+}
+
+void setSceneState(std::size_t scene, SceneState state) {
+  if (!work || sceneStates < 0 || ::pwrite(sceneStates, &state, sizeof state, static_cast<off_t>(scene)) != 1) return;
+  work->sceneCount = scene + 1;
 }
 
 }  // namespace
@@ -44,6 +55,7 @@ bool shareWork() {
   if (memory == MAP_FAILED) return false;
   work = new (memory) Work;
   results = ::memfd_create("quintet results", MFD_CLOEXEC);
+  sceneStates = ::memfd_create("quintet scenes", MFD_CLOEXEC);
   return true;
 }
 
@@ -101,32 +113,30 @@ std::vector<std::string> workResults() {
   return lines;
 }
 
-// In the lines of results: "+SCENE NAME" begins a scene, "=SCENE" and "!SCENE" end it.
 void sceneBegins(std::size_t scene, std::string_view name) {
-  std::string line = "+" + std::to_string(scene) + " " + std::string(name);
-  std::ranges::replace(line, '\n', ' ');
-  addWorkResult(line + "\n");
+  if (work) assign(work->scene, name);
+  setSceneState(scene, SceneState::begun);
 }
 
-void sceneEnds(std::size_t scene, bool failed) { addWorkResult((failed ? "!" : "=") + std::to_string(scene) + "\n"); }
+void sceneEnds(std::size_t scene, bool failed) {
+  setSceneState(scene, failed ? SceneState::failed : SceneState::ended);
+}
 
-void scenesEnd() { clearWorkResults(); }
+void scenesEnd() {
+  if (work) work->sceneCount = 0;
+}
 
 SceneProgress sceneProgress() {
   SceneProgress progress;
-  for (const std::string& line : workResults()) {
-    const std::size_t scene = std::strtoull(line.c_str() + 1, nullptr, 10);
-    if (line[0] == '+') {
-      if (progress.unfinished) progress.failed.push_back(progress.next - 1);
-      progress.next = scene + 1;
-      progress.unfinished = true;
-      progress.name = line.substr(std::min(line.find(' ') + 1, line.size()));
-    } else {
-      if (line[0] == '!') progress.failed.push_back(scene);
-      progress.unfinished = false;
-    }
-  }
-  if (progress.unfinished) progress.failed.push_back(progress.next - 1);
+  if (!work || sceneStates < 0) return progress;
+  std::vector<SceneState> states(work->sceneCount);
+  const ssize_t read = ::pread(sceneStates, states.data(), states.size(), 0);
+  states.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
+  for (std::size_t scene = 0; scene < states.size(); ++scene)
+    if (states[scene] != SceneState::ended) progress.failed.push_back(scene);
+  progress.next = states.size();
+  progress.unfinished = !states.empty() && states.back() == SceneState::begun;
+  progress.name = work->scene.data();
   return progress;
 }
 

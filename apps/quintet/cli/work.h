@@ -27,18 +27,19 @@ void setWatchedFiles(const job::WatchList& list);     // as far as 64 KiB suffic
 void addWorkResult(const std::string& line);
 void clearWorkResults();  // they are printed, or the command starts over
 
-// Of a command that works on several scenes, so that a new process continues after a scene that has ended the first one.
+// In the child of a command that works on several scenes, which begin in their order. If one of them ends the process, a new
+// process continues with the next one.
 void sceneBegins(std::size_t scene, std::string_view name);
 void sceneEnds(std::size_t scene, bool failed);
 void scenesEnd();  // the command ends: no new process continues, even if the last scene has ended a process
 
 struct SceneProgress {
   std::vector<std::size_t> failed;  // with the one that has not ended
-  std::size_t next = 0;             // scene
+  std::size_t next = 0;             // the scene after the one that was started last
   bool unfinished = false;          // a scene was started and has not ended
   std::string name;                 // of the scene that was started last
 };
-SceneProgress sceneProgress();
+SceneProgress sceneProgress();  // in the parent, and in a new child
 
 // In the parent, after the child has ended. Empty if unknown.
 std::string_view workStage();
