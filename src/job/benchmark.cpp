@@ -140,8 +140,9 @@ Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   const shared::RayKinds kinds = records.downloadAs<shared::RayKinds>(1)[0];
   if (kinds.camera == 0)
     throw UsageError(
-        fmt::format("the program '{}' traces no rays with traceClosest and traceVisible", setup.request.program),
-        Remedy::measureLaunches);
+        fmt::format("the program '{}' traces no rays with traceClosest and traceVisible; use 'quintet bench PROGRAM "
+                    "SCENE' to measure its launches",
+                    setup.request.program));
 
   render::Renderer tracer = setup.renderer(scene, program, setup.settings(program, setup.size));
   render::RenderSettings replaying = setup.settings(replay, setup.size);

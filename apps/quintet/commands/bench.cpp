@@ -55,8 +55,8 @@ OptionTable declareBench(BenchOptions& options) {
   job::BenchmarkRequest& request = options.request;
   table.add({{.names = "SCENE|PROGRAM",
               .help = "Scene, of triangles without alpha unless --profile is given (minimal shaders support nothing "
-                      "else); or a program, and its "
-                      "scene: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
+                      "else); or a program, and its scene: .gltf, .glb or .scene.toml (default: the program's own, or "
+                      "built in)",
               .target = &options.positional,
               .candidates = programOrSceneCandidates(),
               .required = true},
