@@ -289,7 +289,7 @@ void Application::handleBlockedWork() {
 
 // `error`: the new process waits for a save; empty if it renders at once. Has no effect if the process cannot be replaced.
 void Application::restart(const std::string& error, const std::vector<Diagnostic>& diagnostics) {
-  if (std::exchange(cannotRestart_, true) || !state_.snapshot->request) return;
+  if (!state_.snapshot->request || std::exchange(cannotRestart_, true)) return;
   RestartNote note;
   note.error = error;
   note.diagnostics = diagnostics;

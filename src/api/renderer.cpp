@@ -263,9 +263,8 @@ struct Renderer::Impl {
   job::RenderJob& idleJob() {
     if (rendering)
       throw UsageError(
-          "a progress function cannot change the renderer or render: let it return false, then do so after render() "
-          "has "
-          "returned");
+          "a progress function can neither change the renderer nor render: let it return false, and do so after "
+          "render() has returned");
     return job;
   }
 

@@ -52,8 +52,6 @@ void renderSamples(render::Renderer& renderer, std::uint64_t count) {
     renderer.renderBatch(static_cast<std::uint32_t>(std::min(kBatch, count - done)));
 }
 
-}  // namespace
-
 // Gives the diagnostics Q002 the location of the operation that made the value. They are about outputs, whose store is
 // seldom the cause.
 void locateNotFinite(Engine& engine, render::DeviceScene& scene, const program::Program& program,
@@ -75,6 +73,8 @@ void locateNotFinite(Engine& engine, render::DeviceScene& scene, const program::
     diagnostic.text = fmt::format("{}; {}", originText(*origin), diagnostic.text);
   }
 }
+
+}  // namespace
 
 std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& program, scene::Scene scene,
                                         const RenderRequest& request,

@@ -196,10 +196,10 @@ std::vector<SampleRange> missingSamples(const render::SampleCounts& counts, std:
 
 RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer, const std::string& commandLine,
                    std::size_t maxMemory) {
+  if (parts.empty()) throw UsageError("a merge requires at least one film");
   Merger merger(observer, maxMemory);
   for (const std::filesystem::path& part : parts) merger.add(part);
   FilmFile& film = merger.film();
-  if (parts.empty()) throw UsageError("a merge requires at least one film");
   if (film.film.counts.ranges.empty()) throw FileError(parts.front(), "contains no samples");
   RenderResult result;
   result.error = render::estimateError(film.film);

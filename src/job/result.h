@@ -103,8 +103,8 @@ void addFrame(RenderResult& result, const RenderResult& frame);
 // What a user must know about a complete or interrupted render: a missed target error, unless the render was interrupted,
 // discarded samples, pixels that are not finite, and skipped traces. Empty if there is nothing to report.
 std::vector<std::string> resultWarnings(const RenderResult& result);
-// What of it the shaders caused, as warnings without a location: discarded samples, pixels that are not finite (Q002), and
-// skipped traces (Q003).
+// The warnings of resultWarnings() that the shaders caused, without a location: discarded samples, pixels that are not
+// finite (Q002), and skipped traces (Q003).
 std::vector<Diagnostic> runFindings(const RenderResult& result);
 
 // The result as a film file: what a checkpoint or a part contains.

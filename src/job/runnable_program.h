@@ -55,7 +55,7 @@ CheckedProgram compileAndCheck(const program::Program& program, const shader::Co
                                const check::DeviceLimits& limits,
                                program::Instrumentation instrumentation = program::Instrumentation::none);
 
-// Returns what Observer::deviceHung() reports when a launch of the program did not end within `seconds`.
+// Returns what Observer::deviceHung() reports when a launch of the program did not end in time.
 Diagnostic hangDiagnostic(const program::Program& program, const TimeoutError& error);
 
 }  // namespace quintet::job

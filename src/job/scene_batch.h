@@ -30,8 +30,8 @@ struct SceneBatchResult {
   bool interrupted = false;         // the last scene that was started; those after it were not rendered
 };
 
-// A scene that fails does not stop the others; also if the device is lost, which is opened again. Throws gpu::NoDeviceError,
-// and TimeoutError, after which the device may be in use for ever.
+// A scene that fails does not stop the others. If it has lost the device, the next scene opens the device again. Throws
+// gpu::NoDeviceError, and TimeoutError, after which the device can stay in use forever.
 SceneBatchResult renderScenes(Engine& engine, const SceneBatch& batch);
 
 // "2 of 20 scenes failed: a.glb, b.glb"

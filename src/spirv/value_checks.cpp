@@ -139,7 +139,9 @@ class ValueChecks {
       }
       const bool isChecked = value < values_.size() && inFunctions && hasResult(values_[value]);
       out_.copy();
-      if (isChecked) check(values_[value], value), ++value;
+      if (!isChecked) continue;
+      check(values_[value], value);
+      ++value;
     }
     return out_.take();
   }

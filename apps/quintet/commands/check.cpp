@@ -112,7 +112,7 @@ OptionTable declareCheck(CheckOptions& options) {
         .target = &options.samples},
        {.names = "--timeout",
         .value = "SECONDS",
-        .help = fmt::format("{}; of --instrument", kLaunchLimitHelp),
+        .help = fmt::format("With --instrument: {}", kLaunchLimitHelp),
         .target = &options.timeout},
        {.names = "--set",
         .value = "NAME=VALUE",

@@ -112,7 +112,8 @@ std::vector<RenderOptions> optionsOfScenes(const RenderCommand& command, Argumen
     options.request.commandLine = commandLine("render", arguments);
     convertRendering(texts, options);
     checkStandardStreams(options);
-    std::error_code ignored;  // of a folder that depends on the scene; writing reports it
+    // The pattern can name a folder for each scene. If it cannot be created, writing reports it.
+    std::error_code ignored;
     if (texts.output != command.texts.output)
       std::filesystem::create_directories(std::filesystem::path(texts.output).parent_path(), ignored);
   }

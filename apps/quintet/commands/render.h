@@ -16,7 +16,8 @@
 
 namespace quintet::cli {
 
-// The devices of one render after the other. Messages of the drivers go to the console of the current one.
+// The devices that several renders use, one after the other. Messages of the drivers go to the console of the current
+// render.
 class RenderDevices {
  public:
   class Use {  // by a render

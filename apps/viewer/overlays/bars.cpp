@@ -62,7 +62,7 @@ std::string pixelText(const ViewState& state) {
                      values[0], values[1], values[2]);
 }
 
-// "3 pixels are not finite"; empty if all are.
+// "3 pixels are NaN or infinite"; empty if there are none.
 std::string notFiniteText(const ViewState& state) {
   const std::uint64_t pixels = state.display ? state.display->histogram.notFinitePixels : 0;
   const std::uint64_t samples = state.snapshot->droppedSamples;
