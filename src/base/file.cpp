@@ -106,9 +106,10 @@ Container readFrom(const Descriptor& in, const struct stat& info, const fs::path
   return data;
 }
 
-int openToRead(const fs::path& file) {
-  return file == kStandardInput ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                                : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+// Also with the name /dev/stdin.
+bool isStandardInput(const struct stat& info) {
+  struct stat input {};
+  return ::fstat(STDIN_FILENO, &input) == 0 && input.st_dev == info.st_dev && input.st_ino == info.st_ino;
 }
 
 // What was read from standard input, pipes and sockets, which give their bytes only once. A file is often read twice, for
@@ -126,7 +127,8 @@ class Streams {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<const FileBytes>& known = bytes_[{info.st_dev, info.st_ino}];
     if (known) return known;
-    const Descriptor in(openToRead(file));
+    const Descriptor in(isStandardInput(info) ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                              : ::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in) failReading(file, errno);
     known = std::make_shared<FileBytes>(readFrom<FileBytes>(in, info, file, budget));
     return known;
@@ -144,7 +146,7 @@ Container readAll(const fs::path& file, MemoryBudget& budget) {
   if ((standardInput ? ::fstat(STDIN_FILENO, &info) : ::stat(file.c_str(), &info)) != 0) failReading(file, errno);
   if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
   if (!standardInput && !S_ISFIFO(info.st_mode) && !S_ISSOCK(info.st_mode)) {
-    const Descriptor in(openToRead(file));
+    const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
     return readFrom<Container>(in, info, file, budget);
   }
