@@ -31,7 +31,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   struct Options {
     std::filesystem::path worker;  // executable
     WorkerSettings settings;
-    const ProjectFolder* project = nullptr;  // of `settings`; its files can become more
+    const ProjectFolder* project = nullptr;  // of `settings`; it can get more files
     double idleSeconds = 600;
     std::string memoryHint;       // ServerOptions::memoryHint
     bool accepted = true;         // false: too many sessions are open

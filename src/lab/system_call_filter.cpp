@@ -8,6 +8,7 @@
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -34,7 +35,7 @@ constexpr std::uint32_t kArchitecture = 0;
 
 // Numbers from 424 on are the same for all architectures; the headers of Debian 12 lack the last ones.
 constexpr std::uint32_t kDenied[] = {
-    // Network. Unix sockets, too: other programs of the user listen to them. Pairs of sockets remain.
+    // Network. Unix sockets, too: other programs of the user listen to them. Connected pairs remain (filterSystemCalls()).
     __NR_socket,
     // Other processes.
     __NR_ptrace,
@@ -215,6 +216,16 @@ void filterSystemCalls(bool ownSignals) {
     filter.loadArgument(0);
     filter.mask(kNamespaces);
     filter.returnsIfDifferent(0, denial(EPERM));
+  });
+  // A pair of datagram sockets could send to every socket of the user that has a path.
+  filter.forCall(__NR_socketpair, [&] {
+    constexpr std::uint32_t kTypes = 0xf;  // without flags
+    filter.loadArgument(0);
+    filter.returnsIfDifferent(AF_UNIX, denial(EPERM));
+    filter.loadArgument(1);
+    filter.mask(kTypes);
+    filter.returnsIfEqual(SOCK_DGRAM, denial(EPERM));
+    filter.returnsIfEqual(SOCK_RAW, denial(EPERM));  // is one of datagrams, too
   });
   // A terminal, which standard error can be, would execute what is "typed" there.
   filter.forCall(__NR_ioctl, [&] {

@@ -88,6 +88,13 @@ TEST_F(SandboxTest, HasNoNetwork) {
     int ends[2];
     return ::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0;  // for ffmpeg
   }));
+  // These can send to other sockets.
+  constexpr int kTypes[] = {SOCK_DGRAM, SOCK_RAW, SOCK_DGRAM | SOCK_CLOEXEC};
+  for (const int type : kTypes)
+    EXPECT_FALSE(contained([&] {
+      int ends[2];
+      return ::socketpair(AF_UNIX, type, 0, ends) == 0;
+    })) << type;
 }
 
 TEST_F(SandboxTest, ReachesNoOtherProcess) {
