@@ -278,7 +278,7 @@ export class LessonPanel {
     copy.addEventListener("click", () => {
       navigator.clipboard.writeText(forTerminal).then(
         () => notify("The command was copied"),
-        () => notify("The browser does not allow to copy", "error"),
+        () => notify("The browser does not allow copying", "error"),
       );
     });
     if (command.kind === "terminal") return h("div", { class: "command terminal" }, h("code", {}, forTerminal), h("span", { class: "where" }, "In a terminal"), copy);
