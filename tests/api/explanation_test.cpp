@@ -199,6 +199,8 @@ TEST(ApiExplanation, SearchFindsSamplesThatAreNotFinite) {
   EXPECT_EQ(found.x, 3u);
   EXPECT_EQ(found.y, 2u);
   EXPECT_EQ(found.sample, 0u);
+  EXPECT_EQ(found.event, "store");
+  EXPECT_EQ(found.field, "value");
   EXPECT_EQ(found.pixels, 1u);
   EXPECT_EQ(found.samples, 6u);
   EXPECT_EQ(found.firstX, 3u);

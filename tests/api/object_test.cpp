@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects that were moved from, changes while a render is at work, and cancellation.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -198,6 +201,14 @@ TEST(ApiCancellation, EndsTheConstruction) {
 }
 
 TEST(ApiCancellation, EndsLoading) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("quintet_canceled_" + std::to_string(::getpid()) + ".scene.toml");
+  std::ofstream(file) << "[[material]]\nname = \"a\"\n";
+  int asked = 0;
+  EXPECT_THROW(Scene::load(file, {.canceled = [&] { return ++asked > 0; }}), CanceledError);
+  EXPECT_GT(asked, 0);
+  EXPECT_EQ(Scene::load(file, {.canceled = [] { return false; }}).material(0).name, "a");
+  std::filesystem::remove(file);
   EXPECT_THROW(Scene::load("missing.glb", {.canceled = [] { return false; }}), FileError);
 }
 

@@ -168,6 +168,7 @@ void expectMessages(const std::string& program) {
   const std::vector<std::string> messages = messagesOf(program, checkMistake(program).diagnostics);
   if (messages == expectedMessages(program)) return;
   for (const std::string& line : messages) ADD_FAILURE() << "\nmessages.txt: " << line;
+  if (messages.empty()) ADD_FAILURE() << "no message, but messages.txt has one";
 }
 
 TEST_P(Mistakes, HaveTheirMessages) { expectMessages(GetParam()); }
