@@ -11,15 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "lab/system_call_filter.h"
 
 namespace quintet::lab {
-
-// The process cannot be restricted, although the kernel offers it.
-class SandboxError : public Error {
- public:
-  using Error::Error;
-};
 
 // What this kernel, or the container around this process, offers.
 struct SandboxSupport {

@@ -20,8 +20,6 @@
 
 #include <fmt/format.h>
 
-#include "lab/sandbox.h"
-
 namespace quintet::lab {
 namespace {
 

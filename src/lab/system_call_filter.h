@@ -4,7 +4,15 @@
 #ifndef QUINTET_LAB_SYSTEM_CALL_FILTER_H
 #define QUINTET_LAB_SYSTEM_CALL_FILTER_H
 
+#include "base/error.h"
+
 namespace quintet::lab {
+
+// The process cannot be restricted, although the kernel offers it.
+class SandboxError : public Error {
+ public:
+  using Error::Error;
+};
 
 // Whether the kernel and this architecture support the filter.
 bool hasSystemCallFilter();

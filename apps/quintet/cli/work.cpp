@@ -33,7 +33,7 @@ Work* work = nullptr;
 int results = -1;
 int sceneStates = -1;  // a SceneState for each scene that was started
 
-enum class SceneState : unsigned char { begun, ended, failed };
+enum class SceneState : unsigned char { started, ended, failed };
 static_assert(sizeof(SceneState) == 1);
 
 template <std::size_t N>
@@ -115,7 +115,7 @@ std::vector<std::string> workResults() {
 
 void sceneBegins(std::size_t scene, std::string_view name) {
   if (work) assign(work->scene, name);
-  setSceneState(scene, SceneState::begun);
+  setSceneState(scene, SceneState::started);
 }
 
 void sceneEnds(std::size_t scene, bool failed) {
@@ -135,7 +135,7 @@ SceneProgress sceneProgress() {
   for (std::size_t scene = 0; scene < states.size(); ++scene)
     if (states[scene] != SceneState::ended) progress.failed.push_back(scene);
   progress.next = states.size();
-  progress.unfinished = !states.empty() && states.back() == SceneState::begun;
+  progress.unfinished = !states.empty() && states.back() == SceneState::started;
   progress.name = work->scene.data();
   return progress;
 }
