@@ -22,8 +22,8 @@ void noteLight(const std::string& scene, scene::OwnLight light, Observer& observ
       break;
     case scene::OwnLight::faint:
       observer.note(
-          fmt::format("{}: the emissive surfaces leave most of the scene dark, using the default environment (the "
-                      "environment 'none' disables it)",
+          fmt::format("{}: its own lights leave most of the scene dark, using the default environment (the environment "
+                      "'none' disables it)",
                       scene));
       break;
     case scene::OwnLight::emission:

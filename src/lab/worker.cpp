@@ -582,7 +582,7 @@ class Worker : public job::Observer {
         reportAlive();
         return inbox_.closed() || (!moving && inbox_.hasUrgent());
       };
-      report(session_->step(paused_ ? 0.0 : kStepSeconds, interrupted));
+      report(session_->step(paused_ || still_ ? 0.0 : kStepSeconds, interrupted));
     } else if (session_->restarts() != restarts_) {
       progress_ = {};  // an edit: render one image
     }

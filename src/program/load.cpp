@@ -218,8 +218,8 @@ std::map<std::string, std::string> shortNames() {
 // Returns whether a name that was not found is that of a file or folder rather than of a built-in program.
 bool isPath(const std::string& name) {
   std::error_code ignored;
-  const fs::path parent = fs::path(name).parent_path();
-  return name.ends_with(kLectureExtension) || name.ends_with('/') || name.starts_with('.') ||
+  const fs::path path(name), parent = path.parent_path();
+  return name.ends_with(kLectureExtension) || name.ends_with('/') || name.starts_with('.') || path.is_absolute() ||
          (!parent.empty() && fs::is_directory(parent, ignored));
 }
 

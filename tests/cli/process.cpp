@@ -12,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -79,13 +80,19 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
+// tests/mutation/run tests one with a bug.
+std::string testedBinary() {
+  const char* changed = std::getenv("QUINTET_TESTED_BINARY");
+  return changed ? changed : QUINTET_BINARY;
+}
+
 // posix_spawn cannot change the working directory portably. A shell does it and then executes the binary.
 std::vector<std::string> commandOf(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                                    const std::string& shell) {
   const std::string change = folder.empty() ? "" : "cd \"$0\" && ";
   const std::string more = shell.empty() ? "" : shell + " && ";
   std::vector<std::string> command{"/bin/sh", "-c", change + more + "exec \"$@\"",
-                                   folder.empty() ? "sh" : folder.string(), QUINTET_BINARY};
+                                   folder.empty() ? "sh" : folder.string(), testedBinary()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
 }

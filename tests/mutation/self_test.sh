@@ -46,6 +46,10 @@ entry at two BUG; echo 'at 3 1' >> "$scratch/table"; expect 0 '1 texts, each fou
 entry at two BUG; echo 'at 4 1' >> "$scratch/table"; expect 2 '\[at\] shaders/a.glsl: text not found at line 4' --texts
 entry at two BUG; echo 'at 3 1' >> "$scratch/table"; expect 0 '^at .* caught ' "$bin"
 entry nowhere one BUG shaders/b;    expect 2 '\[nowhere\] shaders/b: no such file' --texts
+mkdir -p "$scratch/src"; echo one > "$scratch/src/a.h"; echo one > "$scratch/notes.md"
+entry header one BUG src/a.h;       expect 2 "\[header\] src/a.h: a header needs a line 'source FILE'" --texts
+entry header one BUG src/a.h; echo 'source src/a.cpp' >> "$scratch/table"; expect 0 '1 texts, each found once' --texts
+entry other one BUG notes.md;       expect 2 '\[other\] notes.md: neither a source nor in shaders/ or programs/' --texts
 entry fine one BUG; entry gone four BUG; expect 2 '1 of 2 entries cannot be seeded' "$bin"
 entry fine one BUG;                 expect 0 '^fine .* caught  *Some.Test' "$bin"
 entry unseen one 1;                 expect 1 '^unseen .* SURVIVED' "$bin"

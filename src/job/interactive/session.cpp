@@ -65,6 +65,34 @@ program::Program loadForSession(const std::string& name) {
   return program::withAllHeatMaps(program::loadProgram(name));
 }
 
+// A state for an edited version of its program, without what this version does not have or accept.
+struct Fitted {
+  SessionState state;
+  std::vector<std::string> warnings;  // what was left out
+};
+
+Fitted fittedTo(const program::Program& edited, SessionState state) {
+  Fitted result;
+  program::ParameterValues values(edited.parameters);
+  std::erase_if(state.assignments, [&](const std::string& assignment) {
+    try {
+      values.setAssignment(assignment);
+      return false;
+    } catch (const UsageError& error) {
+      result.warnings.push_back(fmt::format("'{}' does not count any more: {}", assignment, error.what()));
+      return true;
+    }
+  });
+  const std::vector<std::string> outputs = program::outputNames(edited);
+  if (!outputs.empty() && std::ranges::find(outputs, state.output) == outputs.end()) {
+    result.warnings.push_back(
+        fmt::format("the output '{}' does not exist any more: showing '{}'", state.output, outputs.front()));
+    state.output = outputs.front();
+  }
+  result.state = std::move(state);
+  return result;
+}
+
 std::size_t indexOf(const std::string& name, const std::vector<std::string>& names, const char* kind) {
   const auto found = std::ranges::find(names, name);
   if (found == names.end())
@@ -623,7 +651,14 @@ void Session::reloadIfSaved() {
     watchFiles(diagnostics);
   };
   try {
-    recovering([&] { showProgram(loadForSession(state_.program), state_); });
+    Fitted fitted;
+    recovering([&] {
+      program::Program saved = loadForSession(state_.program);
+      fitted = fittedTo(saved, state_);
+      showProgram(std::move(saved), fitted.state);
+    });
+    state_ = std::move(fitted.state);
+    for (const std::string& warning : fitted.warnings) recorder_->warning(warning);
     recorder_->add(ProgramReloaded{watcher_.changedNames()});
     watched_.addFiles(job_->programFiles());
     watchFiles({});
@@ -632,7 +667,7 @@ void Session::reloadIfSaved() {
     reject(error.diagnostics());
   } catch (const FileError& error) {
     reject({asDiagnostic(error)});
-  } catch (const UsageError& error) {  // such as a value for a parameter that no longer exists
+  } catch (const UsageError& error) {
     reject({{Severity::error, "", 0, 0, "", error.what()}});
   }
 }

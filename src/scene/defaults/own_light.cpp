@@ -15,7 +15,7 @@ namespace quintet::scene {
 namespace {
 
 constexpr std::size_t kReceivers = 256;        // points whose light is estimated
-constexpr std::size_t kEmitters = 16;          // points on emissive triangles, for each receiver
+constexpr std::size_t kEmitters = 16;          // points on emissive triangles, and punctual lights, for each receiver
 constexpr std::size_t kTrianglesPerBox = 256;  // consecutive triangles with common bounds
 constexpr double kMaxBoxTests = 1e9;           // of a scene; very large ones have fewer receivers
 constexpr float kShadowMargin = 1e-3f;         // of a shadow ray's length, at both ends
@@ -41,6 +41,17 @@ float emissionWithoutTexture(const Scene& scene, int material) {
   });
 }
 
+// Of the light of punctual lights: what the base color reflects in all directions. A metal reflects it the more widely, the
+// rougher it is.
+float reflectance(const Material& m) {
+  const float metallic = m.metallicRoughnessTexture.used() ? 0.0f : m.metallic;
+  const float transmission = m.transmissionTexture.used() ? 0.0f : m.transmission;
+  const float spread = (1.0f - metallic) * (1.0f - transmission) + metallic * m.roughness * m.roughness;
+  return luminance(vec3(m.baseColor)) * spread;
+}
+
+bool shines(const Light& light) { return luminance(light.intensity) > 0.0f || !light.values.empty(); }
+
 bool castsShadow(const Material& m) {
   return m.alphaMode == AlphaMode::opaque && m.transmission == 0.0f && m.diffuseTransmission == 0.0f;
 }
@@ -59,7 +70,8 @@ std::array<glm::dvec3, 3> cornersOf(const Geometry& geometry, std::size_t triang
 // A geometry of a mesh in object space, shared by all instances of the mesh.
 struct Surface {
   const Geometry* geometry;
-  float emission = 0.0f;  // luminance
+  float emission = 0.0f;     // luminance
+  float reflectance = 0.0f;  // of punctual lights
   bool doubleSided = false;
   bool castsShadow = true;
   std::vector<double> areas;   // cumulative, by triangle
@@ -69,9 +81,9 @@ struct Surface {
 };
 
 Surface surfaceOf(const Scene& scene, const Geometry& geometry) {
-  Surface surface{&geometry, emissionWithoutTexture(scene, geometry.material)};
   const Material material =
       geometry.material == kNone ? Material{} : scene.materials[static_cast<std::size_t>(geometry.material)];
+  Surface surface{&geometry, emissionWithoutTexture(scene, geometry.material), reflectance(material)};
   surface.doubleSided = material.doubleSided;
   surface.castsShadow = castsShadow(material);
   surface.areas.reserve(geometry.triangles.size());
@@ -178,12 +190,40 @@ bool blocks(const Part& part, const glm::dvec3& from, const glm::dvec3& to) {
   return false;
 }
 
-// The surfaces of all meshes, and their visible instances.
+// The light of a punctual light at a point: the position from which it comes, and the luminance of its irradiance at normal incidence.
+struct Arrival {
+  glm::dvec3 from;
+  double irradiance;
+};
+
+Arrival arrivalOf(const Light& light, const glm::dvec3& point, double sceneSize) {
+  const double intensity = luminance(light.intensity);
+  const glm::dvec3 axis(light.direction);
+  if (light.type == LightType::directional) return {point - axis * sceneSize, intensity};
+  const glm::dvec3 from(light.position);
+  const double square = glm::dot(point - from, point - from);
+  if (!(square > 0.0) || square > double{light.range} * double{light.range}) return {from, 0.0};
+  double part = 1.0;
+  if (light.type == LightType::spot) {
+    const double cosine = glm::dot(axis, point - from) / std::sqrt(square);
+    const double outer = std::cos(double{light.outerConeAngle}), inner = std::cos(double{light.innerConeAngle});
+    part = std::clamp((cosine - outer) / std::max(inner - outer, 1e-6), 0.0, 1.0);
+    part *= part;  // KHR_lights_punctual
+  }
+  return {from, intensity * part / square};
+}
+
+// The surfaces of all meshes, their visible instances, and the punctual lights that shine.
 struct World {
   std::vector<std::vector<Surface>> surfaces;  // by mesh
   std::vector<Part> parts;
+  std::vector<const Light*> lights;
+  double size = 0.0;  // the diagonal of the bounds
 
   explicit World(const Scene& scene) : surfaces(scene.meshes.size()) {
+    for (const Light& light : scene.lights)
+      if (shines(light)) lights.push_back(&light);
+    Bounds3 bounds;
     for (const Instance& instance : scene.instances) {
       if (instance.mask == 0 || !isFinite(instance.worldFromObject)) continue;
       std::vector<Surface>& ofMesh = surfaces[static_cast<std::size_t>(instance.mesh)];
@@ -193,37 +233,73 @@ struct World {
       const glm::dmat4 worldFromObject(instance.worldFromObject);
       const double determinant = std::abs(glm::determinant(glm::dmat3(worldFromObject)));
       if (!(determinant > 0.0)) continue;
-      for (const Surface& surface : ofMesh)
-        if (surface.area() > 0.0)
-          parts.push_back(
-              {&surface, worldFromObject, glm::inverse(worldFromObject), std::cbrt(determinant * determinant)});
+      for (const Surface& surface : ofMesh) {
+        if (!(surface.area() > 0.0)) continue;
+        parts.push_back(
+            {&surface, worldFromObject, glm::inverse(worldFromObject), std::cbrt(determinant * determinant)});
+        for (const Bounds3& box : surface.boxes) bounds.extend(box.transformed(instance.worldFromObject));
+      }
     }
+    if (!bounds.empty()) size = glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
   }
   double boxCount() const {
     double count = 0.0;
     for (const Part& part : parts) count += 1.0 + static_cast<double>(part.surface->boxes.size());
     return count;
   }
+  bool isBlocked(const glm::dvec3& from, const glm::dvec3& to) const {
+    return std::ranges::any_of(parts, [&](const Part& part) { return blocks(part, from, to); });
+  }
 };
 
-// Whether the emission of a part, or the light of other parts, makes the point lit.
-bool isLit(const World& world, const Distribution& emitters, std::size_t receiver, const Point& point) {
-  if (point.part->surface->emission >= kLitRadiance) return true;
+// The cosine at a point, on the side that counts, of the direction to another one.
+double cosineAt(const Point& point, std::size_t receiver, const glm::dvec3& to) {
+  const double side = point.part->surface->doubleSided && receiver % 2 == 1 ? -1.0 : 1.0;
+  return side * glm::dot(point.normal, glm::normalize(to - point.position));
+}
+
+// The irradiance by emissive triangles.
+double emittedLight(const World& world, const Distribution& emitters, std::size_t receiver, const Point& point) {
   const double jitter = quasirandom(receiver).y;
   double irradiance = 0.0;
-  for (std::size_t e = 0; e < kEmitters; ++e) {
+  for (std::size_t e = 0; e < kEmitters && emitters.total() > 0.0; ++e) {
     const std::size_t index = receiver * kEmitters + e;
     const Point light = emitters.at((static_cast<double>(e) + jitter) / kEmitters, index);
     const glm::dvec3 to = light.position - point.position;
     const double square = glm::dot(to, to);
     if (!(square > 0.0)) continue;
-    const double side = point.part->surface->doubleSided && receiver % 2 == 1 ? -1.0 : 1.0;
-    const double cosines = side * glm::dot(point.normal, to) * std::abs(glm::dot(light.normal, to)) / square;
-    if (!(cosines > 0.0)) continue;
-    const auto isBlocking = [&](const Part& part) { return blocks(part, point.position, light.position); };
-    if (std::ranges::none_of(world.parts, isBlocking)) irradiance += emitters.total() / kEmitters * cosines / square;
+    const double cosines =
+        cosineAt(point, receiver, light.position) * std::abs(glm::dot(light.normal, to)) / std::sqrt(square);
+    if (!(cosines > 0.0) || world.isBlocked(point.position, light.position)) continue;
+    irradiance += emitters.total() / kEmitters * cosines / square;
   }
-  return irradiance / glm::pi<double>() >= static_cast<double>(kLitRadiance);
+  return irradiance;
+}
+
+// The irradiance by the kEmitters punctual lights whose light is the strongest here without shadows.
+double punctualLight(const World& world, std::size_t receiver, const Point& point) {
+  std::vector<Arrival> arrivals;
+  for (const Light* light : world.lights) {
+    Arrival arrival = arrivalOf(*light, point.position, world.size);
+    arrival.irradiance *= cosineAt(point, receiver, arrival.from);
+    if (arrival.irradiance > 0.0) arrivals.push_back(arrival);
+  }
+  const auto tested = std::min(arrivals.size(), kEmitters);
+  std::ranges::partial_sort(arrivals, arrivals.begin() + static_cast<std::ptrdiff_t>(tested), std::greater{},
+                            &Arrival::irradiance);
+  double irradiance = 0.0;
+  for (const Arrival& arrival : std::span(arrivals).first(tested))
+    if (!world.isBlocked(point.position, arrival.from)) irradiance += arrival.irradiance;
+  return irradiance;
+}
+
+// Whether the emission of a part, or the light of others, makes the point lit.
+bool isLit(const World& world, const Distribution& emitters, std::size_t receiver, const Point& point) {
+  const Surface& surface = *point.part->surface;
+  if (surface.emission >= kLitRadiance) return true;
+  double reflected = emittedLight(world, emitters, receiver, point);
+  if (surface.reflectance > 0.0f) reflected += double{surface.reflectance} * punctualLight(world, receiver, point);
+  return reflected / glm::pi<double>() >= double{kLitRadiance};
 }
 
 // Whether any visible instance emits, and whether solids do.
@@ -248,18 +324,14 @@ Emission emissionOf(const Scene& scene) {
   return result;
 }
 
-bool shines(const Light& light) { return luminance(light.intensity) > 0.0f || !light.values.empty(); }
-
 }  // namespace
 
 double litShare(const Scene& scene) {
-  const auto emits = [&](const Geometry& g) { return emissionWithoutTexture(scene, g.material) > 0.0f; };
-  if (std::ranges::none_of(scene.meshes, [&](const Mesh& mesh) { return std::ranges::any_of(mesh.geometries, emits); }))
-    return 0.0;
   const World world(scene);
   const Distribution emitters(world.parts, [](const Surface& s) { return static_cast<double>(s.emission); });
   const Distribution receivers(world.parts, [](const Surface&) { return 1.0; });
-  if (!(emitters.total() > 0.0) || !std::isfinite(emitters.total()) || !std::isfinite(receivers.total())) return 0.0;
+  if (!(emitters.total() > 0.0) && world.lights.empty()) return 0.0;
+  if (!(receivers.total() > 0.0) || !std::isfinite(emitters.total()) || !std::isfinite(receivers.total())) return 0.0;
   const double affordable = kMaxBoxTests / (kEmitters * world.boxCount());
   const auto count = static_cast<std::size_t>(std::clamp(affordable, 16.0, static_cast<double>(kReceivers)));
   std::atomic<std::size_t> lit{0};
@@ -271,10 +343,18 @@ double litShare(const Scene& scene) {
 }
 
 OwnLight ownLight(const Scene& scene) {
-  if (std::ranges::any_of(scene.lights, shines)) return OwnLight::punctual;
   const Emission emission = emissionOf(scene);
-  if (!emission.any) return OwnLight::none;
-  return emission.solids || litShare(scene) >= kLitShare ? OwnLight::emission : OwnLight::faint;
+  const bool punctual = std::ranges::any_of(scene.lights, shines);
+  if (!punctual && !emission.any) return OwnLight::none;
+  // Without an estimate: where solids are, an author has placed the lights by hand, and animated lights can be anywhere.
+  const auto hasSolids = [](const Mesh& mesh) { return !mesh.primitiveSets.empty(); };
+  const auto isAnimated = [](const Light& light) { return shines(light) && light.animated(); };
+  if (punctual && (std::ranges::any_of(scene.meshes, hasSolids) || std::ranges::any_of(scene.lights, isAnimated)))
+    return OwnLight::punctual;
+  if (emission.solids) return OwnLight::emission;
+  const double share = litShare(scene);
+  if (punctual) return share >= kPunctualShare ? OwnLight::punctual : OwnLight::faint;
+  return share >= kLitShare ? OwnLight::emission : OwnLight::faint;
 }
 
 }  // namespace quintet::scene

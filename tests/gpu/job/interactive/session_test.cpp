@@ -1074,5 +1074,30 @@ TEST_F(SessionReload, KeepsTheLastGoodProgram) {
   EXPECT_EQ(red(*session), 0);
 }
 
+// A user removes a parameter after its value was changed: the value goes, not the edit.
+TEST_F(SessionReload, LeavesOutValuesThatAVersionDoesNotAccept) {
+  const auto saveWith = [&](const std::string& declarations, const std::string& color) {
+    writeFile(
+        folder_ / "p.rt.glsl",
+        declarations + "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + "));\n}\n");
+  };
+  const std::string green = "uniform float green;  // defaultval=\"0\"\n";
+  saveWith(green + "uniform float shade;  // defaultval=\"0\"\n", "shade, green, 0.0, 1.0");
+  const auto session = makeSession(request(1), (folder_ / "p.rt.glsl").string());
+  session->apply(SetParameter{"shade", "1"});
+  session->apply(SetParameter{"green", "1"});
+  session->refine();
+  EXPECT_EQ(red(*session), 255);
+  saveWith(green, "0.0, green, 1.0, 1.0");
+  const std::vector<Event> events = session->refine();
+  ASSERT_NE(find<ProgramReloaded>(events), nullptr);
+  ASSERT_NE(find<Warning>(events), nullptr);
+  const std::string text = find<Warning>(events)->text;
+  EXPECT_TRUE(text.starts_with("'shade=1' does not count any more: unknown parameter 'shade'")) << text;
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[0], 0);
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[1], 255) << "the other value stays";
+  EXPECT_EQ(session->state().assignments, std::vector<std::string>{"green=1"});
+}
+
 }  // namespace
 }  // namespace quintet::job::interactive

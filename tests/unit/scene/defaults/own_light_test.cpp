@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace quintet::test {
 namespace {
 
@@ -44,6 +47,22 @@ class OwnLightOf : public testing::Test {
         else
           addQuad(corner, v, u, material);
       }
+  }
+  // 64 m², at the height 0.
+  void addFloor() {
+    wall().metallic = 0.0f;
+    addQuad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, 0);
+  }
+  void addLight(const vec3& position, float intensity) {
+    scene::Light& light = scene_.lights.emplace_back();
+    light.position = position;
+    light.intensity = vec3(intensity);
+  }
+  void addSun(const vec3& direction, float irradiance) {
+    scene::Light& light = scene_.lights.emplace_back();
+    light.type = scene::LightType::directional;
+    light.direction = direction;
+    light.intensity = vec3(irradiance);
   }
   void addLamp(float y, float size) { addQuad({-size / 2, y, -size / 2}, {size, 0, 0}, {0, 0, size}, 1); }
 
@@ -129,10 +148,105 @@ TEST_F(OwnLightOf, EmissionWithATextureDoesNotCount) {
 }
 
 TEST_F(OwnLightOf, PunctualLightCountsIfItShines) {
-  addCube(false, 0);
-  scene_.lights.emplace_back().intensity = vec3(0);
+  addFloor();
+  addLight({0, 1, 0}, 0.0f);
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::none);
-  scene_.lights.emplace_back().intensity = vec3(0.001f);  // a night scene
+  scene_.lights[0].intensity = vec3(0.1f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint) << "the floor below it has a radiance of 0.03";
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  scene_.lights[0].intensity = vec3(10.0f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+}
+
+// The sun lights three of six faces. The default environment would flood what its author has left dark.
+TEST_F(OwnLightOf, SunOnOneSideLightsAModel) {
+  addCube(false, 0);
+  addSun(glm::normalize(vec3(-1, -1, -1)), 1.0f);
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.03);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+  addCube(false, 0, 20.0f);  // a hall that shuts the sun out: 1,600 times the area of the model
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.03) << "the outside of the hall";
+  scene_.lights[0].direction = -scene_.lights[0].direction;
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.03);
+}
+
+// The irradiance of I/(h² + r²) · cos is I·h/(h² + r²)^1.5, and the radiance ρ/π of it.
+TEST_F(OwnLightOf, ShareOfAPointLightIsThatOfTheClosedForm) {
+  addFloor();
+  addLight({0, 1, 0}, 3.0f);
+  const auto lit = [](double intensity, double reflectance) {
+    const double square = std::pow(reflectance * intensity / (0.05 * glm::pi<double>()), 2.0 / 3.0) - 1.0;
+    return square > 0.0 ? glm::pi<double>() * square / 64.0 : 0.0;
+  };
+  EXPECT_NEAR(scene::litShare(scene_), lit(3.0, 1.0), 0.02);
+  wall().baseColor = vec4(0.2f, 0.2f, 0.2f, 1);
+  EXPECT_NEAR(scene::litShare(scene_), lit(3.0, 0.2), 0.02);
+  scene_.lights[0].range = 1.2f;
+  wall().baseColor = vec4(1);
+  EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() * 0.44 / 64.0, 0.01) << "a disk within the range";
+  scene_.lights[0].range = std::numeric_limits<float>::infinity();
+  scene_.lights[0].type = scene::LightType::spot;
+  scene_.lights[0].direction = {0, -1, 0};
+  scene_.lights[0].outerConeAngle = scene_.lights[0].innerConeAngle = glm::radians(45.0f);
+  EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() / 64.0, 0.01) << "the disk of the cone";
+  addLight({0, -1, 0}, 1000.0f);
+  EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() / 64.0, 0.01) << "a light behind the floor";
+}
+
+// A mirror shows nothing of a point; the rougher it is, the more.
+TEST_F(OwnLightOf, MetalsAndGlassNeedMoreThanAPunctualLight) {
+  addFloor();
+  addSun({0, -1, 0}, 3.0f);
+  const auto light = [&] { return scene::ownLight(scene_); };
+  EXPECT_EQ(light(), OwnLight::punctual);
+  wall().metallic = 1.0f;
+  wall().roughness = 0.1f;
+  EXPECT_EQ(light(), OwnLight::faint);
+  wall().roughness = 0.8f;
+  EXPECT_EQ(light(), OwnLight::punctual);
+  wall().roughness = 0.1f;
+  wall().metallicRoughnessTexture.texture = 0;
+  EXPECT_EQ(light(), OwnLight::punctual) << "unknown, so that it is not taken for a metal";
+  wall() = scene::Material{};
+  wall().metallic = 0.0f;
+  wall().transmission = 1.0f;
+  EXPECT_EQ(light(), OwnLight::faint);
+}
+
+TEST_F(OwnLightOf, ShadowsOfPunctualLightsCount) {
+  addFloor();
+  addSun({0, -1, 0}, 3.0f);
+  addQuad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, 0);  // a ceiling that faces the floor
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+  scene_.instances[1].mask = 0;
+  EXPECT_EQ(scene::litShare(scene_), 1.0) << "hidden";
+}
+
+TEST_F(OwnLightOf, PunctualLightsAddToEachOtherAndToEmission) {
+  addFloor();
+  addSun({0, -1, 0}, 0.12f);  // a radiance of 0.038
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  addSun(glm::normalize(vec3(0.2f, -1, 0)), 0.12f);
+  EXPECT_EQ(scene::litShare(scene_), 1.0) << "two suns";
+  scene_.lights.resize(1);
+  addQuad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, 1);  // a ceiling of clear foil, which faces the floor
+  lamp().alphaMode = scene::AlphaMode::blend;
+  lamp().emissive = vec3(0.03f);  // less than 0.05 on the floor below
+  EXPECT_NEAR(scene::litShare(scene_), 0.5, 0.1) << "the floor without its edge, by the sun and the ceiling";
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+  scene_.lights.clear();
+  EXPECT_LT(scene::litShare(scene_), 0.01) << "the ceiling alone";
+}
+
+TEST_F(OwnLightOf, AnimatedLightsAndThoseOfSolidsCountWithoutAnEstimate) {
+  addFloor();
+  addLight({0, 1000, 0}, 1.0f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+  scene_.lights[0].node = 0;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+  scene_.lights[0].node = scene::kNone;
+  scene_.meshes[0].primitiveSets.emplace_back();
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
 }
 
