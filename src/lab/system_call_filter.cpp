@@ -33,8 +33,6 @@ constexpr std::uint32_t kArchitecture = 0;
 
 // Numbers from 424 on are the same for all architectures; the headers of Debian 12 lack the last ones.
 constexpr std::uint32_t kDenied[] = {
-    // Network. Unix sockets, too: other programs of the user listen to them. Connected pairs remain (filterSystemCalls()).
-    __NR_socket,
     // Other processes.
     __NR_ptrace,
     __NR_process_vm_readv,
@@ -133,6 +131,7 @@ constexpr std::uint32_t kMissing[] = {
     435 /* clone3 */,         437 /* openat2 */,
 };
 
+constexpr std::uint32_t kSocketTypes = 0xf;  // without flags
 constexpr std::uint32_t kNamespaces =
     CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET;
 
@@ -215,13 +214,22 @@ void filterSystemCalls(bool ownSignals) {
     filter.mask(kNamespaces);
     filter.returnsIfDifferent(0, denial(EPERM));
   });
-  // A pair of datagram sockets could send to every socket of the user that has a path.
-  filter.forCall(__NR_socketpair, [&] {
-    constexpr std::uint32_t kTypes = 0xf;  // without flags
+  // No network, and no Unix sockets that reach other programs of the user. NVIDIA's driver waits at a socket of this type, or creates
+  // no device for ray tracing; it cannot send before it is connected.
+  filter.forCall(__NR_socket, [&] {
     filter.loadArgument(0);
     filter.returnsIfDifferent(AF_UNIX, denial(EPERM));
     filter.loadArgument(1);
-    filter.mask(kTypes);
+    filter.mask(kSocketTypes);
+    filter.returnsIfDifferent(SOCK_SEQPACKET, denial(EPERM));
+  });
+  filter.returnsIfEqual(__NR_connect, denial(ENOENT));  // as if no program listened
+  // A pair of datagram sockets could send to every socket of the user that has a path.
+  filter.forCall(__NR_socketpair, [&] {
+    filter.loadArgument(0);
+    filter.returnsIfDifferent(AF_UNIX, denial(EPERM));
+    filter.loadArgument(1);
+    filter.mask(kSocketTypes);
     filter.returnsIfEqual(SOCK_DGRAM, denial(EPERM));
     filter.returnsIfEqual(SOCK_RAW, denial(EPERM));  // is one of datagrams, too
   });

@@ -490,6 +490,8 @@ TEST_F(WindowTest, StopsAndClosesDuringAHang) {
                  "float endless(float x) { while (x < 2.0) x = fract(x + 0.37); return x; }\n");
   writeFile(folder_ / "flat.rt.glsl", program);
   ViewerProcess& viewer = start({"wall.scene.toml", "--program", "flat.rt.glsl", "--spp", "4"});
+  EXPECT_GE(viewer.control("Stop")[0], viewer.imageArea()[0]) << "the note has room over a narrow image";
+  viewer.settle();  // the note has just become larger
   viewer.clickControl("Stop");
   viewer.control("Try again");
   viewer.findWindowAgain();

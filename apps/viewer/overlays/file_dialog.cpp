@@ -146,7 +146,7 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
     if (focus_) ImGui::SetKeyboardFocusHere();
     focus_ = false;
     const char* action = opens ? "Open" : "Save";
-    const float actionWidth = ImGui::CalcTextSize(action).x + 4.0f * ImGui::GetStyle().FramePadding.x;
+    const float actionWidth = ImGui::CalcTextSize(action).x + 2.0f * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-actionWidth - ImGui::GetStyle().ItemSpacing.x);
     const bool entered = ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
     if (ImGui::IsItemActive()) framesUntilFocus_ = 0;

@@ -2,6 +2,7 @@
 // Drawn on the image: the legend of false color, the line of the comparison, messages, and the problems of the program.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -105,6 +106,14 @@ void notFinitePixels(const ViewState& state, const Area& area) {
   list.PopClipRect();
 }
 
+// The width of the widest text, but not more than a note has room for over the image.
+float noteWidth(const ViewState& state, const Area& area, std::initializer_list<const char*> texts) {
+  float width = 0.0f;
+  for (const char* text : texts) width = std::max(width, ImGui::CalcTextSize(text).x);
+  const float room = area.size.x - 2.0f * ImGui::GetStyle().WindowPadding.x - 12.0f * state.scale;
+  return std::clamp(room, std::min(60.0f * state.scale, width), width);
+}
+
 void sizeNote(ViewState& state, const Area& area) {
   if (!state.keptSize) return;
   const Snapshot& snapshot = *state.snapshot;
@@ -115,9 +124,13 @@ void sizeNote(ViewState& state, const Area& area) {
   ImGui::Begin("size", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::Text("%s",
-              fmt::format("The image of {} × {} is scaled.", snapshot.state.size.x, snapshot.state.size.y).c_str());
-  ImGui::SameLine();
+  const std::string text = fmt::format("The image of {} × {} is scaled.", snapshot.state.size.x, snapshot.state.size.y);
+  const float width = noteWidth(state, area, {text.c_str()});
+  ImGui::AlignTextToFramePadding();
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  if (area.size.x > 2.5f * width) ImGui::SameLine();
   if (button(label.c_str(), fmt::format("Discards the samples of {:.0f} s (key 0)", snapshot.progress.seconds)))
     state.fitsImage = true;
   ImGui::End();
@@ -134,20 +147,28 @@ void waitingNote(ViewState& state, const Area& area) {
                            : !snapshot.stage.empty() ? capitalized(snapshot.stage)
                            : first                   ? "Rendering the first image; the driver compiles the shaders"
                                                      : "A launch takes long";
-  const vec2 at = area.origin + vec2(0.5f, first ? 0.5f : 0.08f) * area.size;
-  ImGui::SetNextWindowPos({at.x, at.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  const std::string progress = fmt::format("{}... {:.0f} s", work, seconds);
+  constexpr const char* kAdvice = "If a shader does not end, save its repaired file, or stop the work.";
+  const bool canStop = blocked > kStopAfter;
+  const float width = noteWidth(state, area, {progress.c_str(), canStop ? kAdvice : ""});
+  // At the center of the area, or at its top over an image.
+  const float y = first ? 0.5f * area.size.y : 12.0f * state.scale;
+  ImGui::SetNextWindowPos({area.origin.x + 0.5f * area.size.x, area.origin.y + y}, ImGuiCond_Always,
+                          {0.5f, first ? 0.5f : 0.0f});
   ImGui::SetNextWindowBgAlpha(0.9f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6.0f * state.scale);
   ImGui::Begin("waiting", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::TextUnformatted(fmt::format("{}... {:.0f} s", work, seconds).c_str());
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+  ImGui::TextUnformatted(progress.c_str());
   logControl("Waiting");
-  if (blocked > kStopAfter) {
-    ImGui::TextDisabled("%s", "If a shader does not end, save its repaired file, or stop the work.");
+  if (canStop) {
+    ImGui::TextDisabled("%s", kAdvice);
     if (button("Stop", "End the work. The scene is opened again when a file of the program is saved"))
       state.stopsWork = true;
   }
+  ImGui::PopTextWrapPos();
   ImGui::End();
   ImGui::PopStyleVar();
 }

@@ -96,7 +96,8 @@ class DeviceScene {
   // Builds the TLAS for programs with this number of ray types, which the hit record offsets depend on.
   // keepInstanceOrder makes gl_InstanceID the instance's index in the scene, at some cost in speed
   // (docs/design/quirks.md). mergeInstances permits several instances in one acceleration structure, if the driver gains
-  // from it and the other two are false (render/scene/merged_instances.h).
+  // from it and the other two are false (render/scene/merged_instances.h). Renderers call this when they are made, and it holds until
+  // the next call: those of programs that differ in these values cannot take turns with one scene.
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false,
                   bool mergeInstances = false);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built-in programs have no diagnostics, and the check is fast.
+// The built-in programs have no diagnostics.
 #include <algorithm>
-#include <cstdio>
-#include <ctime>
 
 #include "check/scene_facts.h"
 #include "check_test_support.h"
@@ -71,23 +69,6 @@ TEST(CheckBuiltIn, ReportsNothingWithoutFeatures) {
   EXPECT_GT(defines.size(), 5u);
   for (const char* name : {"pathtracer", "ao", "naive", "normals"})
     EXPECT_EQ(textOf(check(program::loadProgram(name), checkCompiler(), nullptr, {}, defines)), "") << name;
-}
-
-// The check runs at each start. Without compilation it takes tens of milliseconds of processor time.
-TEST(CheckBuiltIn, IsFast) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "sanitizers make it several times slower";
-#endif
-  const program::Program program = program::loadProgram("pathtracer");
-  const program::CompiledProgram compiled = compile(program, checkCompiler(), {});
-  double seconds = 1e9;
-  for (int i = 0; i < 5; ++i) {
-    const std::clock_t begin = std::clock();
-    check(program, compiled, nullptr, {});
-    seconds = std::min(seconds, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-  }
-  EXPECT_LT(seconds, 0.5);
-  RecordProperty("milliseconds", static_cast<int>(1000 * seconds));
 }
 
 }  // namespace

@@ -7,9 +7,12 @@
 #include <signal.h>  // NOLINT: kill() of POSIX
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <string>
@@ -84,6 +87,7 @@ TEST_F(SandboxTest, HasNoNetwork) {
   for (const int family : {AF_INET, AF_INET6, AF_UNIX, AF_NETLINK})
     EXPECT_FALSE(contained([&] { return ::socket(family, SOCK_STREAM, 0) >= 0 || ::socket(family, SOCK_RAW, 0) >= 0; }))
         << family;
+  EXPECT_FALSE(contained([] { return ::socket(AF_UNIX, SOCK_DGRAM, 0) >= 0; }));
   EXPECT_TRUE(contained([] {
     int ends[2];
     return ::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0;  // for ffmpeg
@@ -95,6 +99,27 @@ TEST_F(SandboxTest, HasNoNetwork) {
       int ends[2];
       return ::socketpair(AF_UNIX, type, 0, ends) == 0;
     })) << type;
+}
+
+// As NVIDIA's driver does when it creates a device for ray tracing.
+TEST_F(SandboxTest, CanListenToASocketThatReachesNobody) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "quintet-test-" + std::to_string(::getpid());
+  std::ranges::copy(name, address.sun_path + 1);  // abstract
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  const auto* at = reinterpret_cast<const sockaddr*>(&address);
+  EXPECT_TRUE(contained([&] {
+    const int socket = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+    return socket >= 0 && ::bind(socket, at, size) == 0 && ::listen(socket, 1) == 0;
+  }));
+  const int listening = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  ASSERT_TRUE(listening >= 0 && ::bind(listening, at, size) == 0 && ::listen(listening, 1) == 0);
+  EXPECT_FALSE(contained([&] {
+    const int socket = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
+    return ::connect(socket, at, size) == 0 || ::sendto(socket, "x", 1, 0, at, size) == 1;
+  }));
+  ::close(listening);
 }
 
 TEST_F(SandboxTest, ReachesNoOtherProcess) {
