@@ -42,8 +42,8 @@ demo: ## Install packages, build, create the demo scene and render it
 	@echo "Image: $(DEMO)/demo.png"
 
 # Inserting bugs, building the examples against the installed package, and the longest suites take half of the time: `make test
-# SUITES=long`, which CI runs, too. `ctest --preset release -L nightly` takes another half hour: it compiles each header alone and the
-# library inside a second project, and checks all tasks of the lessons in the browser.
+# SUITES=long`, which CI runs, too. `ctest --preset release -L nightly` takes another hour: it compiles each header alone and the
+# library inside a second project, checks all tasks of the lessons in the browser, and runs a few suites of minutes each.
 SUITE_FLAGS_short := -LE '^(mutation|long|nightly)$$'
 SUITE_FLAGS_long  := -L '^(mutation|long)$$'
 SUITE_FLAGS_all   := -LE '^nightly$$'

@@ -33,11 +33,14 @@ set(QUINTET_LONG_SUITES api.ApiExplanation
   gpu.AnisotropyRender gpu.Aov gpu.BsdfAlbedo gpu.BsdfFurnace gpu.BsdfLobes gpu.BsdfReference gpu.BsdfSampling gpu.CameraInMedium
   gpu.Csg gpu.DiffuseTransmission gpu.DispersionRender gpu.ErrorEstimate gpu.ExplainedPrograms gpu.Instrument
   gpu.IridescenceRender gpu.LampBehindABubble gpu.LampBehindPanes gpu.LampInABubble gpu.LightTreeDevice gpu.NestedMedia
-  gpu.OpenMedium gpu.PaneWeights gpu.PixelExplainer gpu.ProgramDraft gpu.Scattering gpu.SessionEdits gpu.SessionExplains
+  gpu.OpenMedium gpu.PixelExplainer gpu.ProgramDraft gpu.Scattering gpu.SessionEdits gpu.SessionExplains
   gpu.SheenRender gpu.SolidAlpha gpu.SolidFarSide gpu.SolidGlass gpu.SolidLight gpu.Solids gpu.TriangleLight
   unit.BuiltInPrograms unit.CheckBuiltIn unit.EngineShaders unit.ExplainedProgram unit.ExplainHooks unit.ForeignModules
-  unit.GltfFuzz unit.LectureFuzz unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Mutation unit.Procedural
+  unit.GltfFuzz unit.LectureFuzz unit.LibraryMutation unit.Mistakes unit.ModuleCheck unit.Procedural
   unit.ProgramFuzz unit.UntilError)
+
+# Those that would take minutes of CI each, and whose code other suites cover.
+set(QUINTET_NIGHTLY_SUITES gpu.PaneWeights unit.Mutation)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
@@ -82,6 +85,8 @@ function(quintet_add_suite_tests OUT TARGET LABEL TIMEOUT)
     set_tests_properties(${name} PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT} COST ${cost})
     if(name IN_LIST QUINTET_LONG_SUITES)
       set_property(TEST ${name} APPEND PROPERTY LABELS long)
+    elseif(name IN_LIST QUINTET_NIGHTLY_SUITES)
+      set_property(TEST ${name} APPEND PROPERTY LABELS nightly)
     endif()
   endforeach()
   set(${OUT} ${names} PARENT_SCOPE)

@@ -155,7 +155,10 @@ TEST(ChooseImageSize, FollowsTheAspect) {
 TEST(ChooseEnvironment, UsesTheFirstSpecified) {
   scene::Scene scene = makeScene();
   EXPECT_TRUE(chooseEnvironment(scene, {}).isFallback());
-  scene.lights.resize(1);
+  scene.lights.resize(1);  // behind the triangle
+  EXPECT_TRUE(chooseEnvironment(scene, {}).isFallback());
+  scene.lights[0].position = {0, 0, 5};
+  scene.lights[0].intensity = vec3(100);
   EnvironmentChoice none = chooseEnvironment(scene, {});
   EXPECT_FALSE(none.isFallback());
   EXPECT_EQ(none.description, "none");
