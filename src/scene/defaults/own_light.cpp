@@ -346,10 +346,12 @@ OwnLight ownLight(const Scene& scene) {
   const Emission emission = emissionOf(scene);
   const bool punctual = std::ranges::any_of(scene.lights, shines);
   if (!punctual && !emission.any) return OwnLight::none;
-  // Without an estimate: where solids are, an author has placed the lights by hand, and animated lights can be anywhere.
-  const auto hasSolids = [](const Mesh& mesh) { return !mesh.primitiveSets.empty(); };
+  // Without an estimate: where no surfaces are; where solids are, since an author has placed the lights by hand; and animated lights,
+  // which can be anywhere.
+  const auto hasSolids = [](const Mesh& mesh) { return mesh.procedural(); };
   const auto isAnimated = [](const Light& light) { return shines(light) && light.animated(); };
-  if (punctual && (std::ranges::any_of(scene.meshes, hasSolids) || std::ranges::any_of(scene.lights, isAnimated)))
+  if (punctual && (scene.instances.empty() || std::ranges::any_of(scene.meshes, hasSolids) ||
+                   std::ranges::any_of(scene.lights, isAnimated)))
     return OwnLight::punctual;
   if (emission.solids) return OwnLight::emission;
   const double share = litShare(scene);
