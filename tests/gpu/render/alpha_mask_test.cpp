@@ -3,6 +3,7 @@
 // section 5.19.12). For rays, shadow rays and the sampling of lights, on triangles, solids and CSG trees.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -140,6 +141,18 @@ TEST(AlphaMask, CutsSolids) {
     expectMasks(kMasks, kind);
     expectMasks(kOpaqueAlpha, kind);
   }
+}
+
+// The only light: a square of 1 m, 1 m above a white floor. Light sampling brings most of its light.
+TEST(AlphaMask, EqualToTheCutoffGivesItsWholeLight) {
+  SceneBuilder scene;
+  addShield(scene, Kind::triangles, withMask(emitter({0, 0, 0.5f}), {0.5f, 0.5f, true}), 0, 1.0f);
+  scene.add(quad({-50, -50, 1}, {100, 0, 0}, {0, 100, 0}), lambert(vec3(1.0f)));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment,
+                             {.compiler = &testCompiler()});
+  // The form factor of a rectangle with half sides a = b = 0.5 at the distance 1: 4/π · a/√(1+a²) · atan(b/√(1+a²)).
+  const double root = std::sqrt(1.25), exact = 0.5 * 4.0 / glm::pi<double>() * 0.5 / root * std::atan(0.5 / root);
+  EXPECT_NEAR(Views(device, "pathtracer").colorSeen({0, 0, 1.5f}, 4).z, exact, 0.04 * exact);
 }
 
 // Invisible emitters: no light, also not by light sampling, and none in the table of lights. A visible lamp keeps all samples.
