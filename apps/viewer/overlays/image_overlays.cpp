@@ -130,7 +130,7 @@ void sizeNote(ViewState& state, const Area& area) {
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
-  if (area.size.x > 2.5f * width) ImGui::SameLine();
+  if (area.size.x > 2.5f * width) ImGui::SameLine();  // the button is about as wide as the text
   if (button(label.c_str(), fmt::format("Discards the samples of {:.0f} s (key 0)", snapshot.progress.seconds)))
     state.fitsImage = true;
   ImGui::End();

@@ -79,14 +79,14 @@ Fitted fittedTo(const program::Program& edited, SessionState state) {
       values.setAssignment(assignment);
       return false;
     } catch (const UsageError& error) {
-      result.warnings.push_back(fmt::format("'{}' does not count any more: {}", assignment, error.what()));
+      result.warnings.push_back(fmt::format("'{}' no longer applies: {}", assignment, error.what()));
       return true;
     }
   });
   const std::vector<std::string> outputs = program::outputNames(edited);
   if (!outputs.empty() && std::ranges::find(outputs, state.output) == outputs.end()) {
     result.warnings.push_back(
-        fmt::format("the output '{}' does not exist any more: showing '{}'", state.output, outputs.front()));
+        fmt::format("the output '{}' no longer exists; showing '{}'", state.output, outputs.front()));
     state.output = outputs.front();
   }
   result.state = std::move(state);

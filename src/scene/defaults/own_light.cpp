@@ -327,6 +327,9 @@ Emission emissionOf(const Scene& scene) {
 }  // namespace
 
 double litShare(const Scene& scene) {
+  const auto emits = [&](const Geometry& g) { return emissionWithoutTexture(scene, g.material) > 0.0f; };
+  const auto hasEmitters = [&](const Mesh& mesh) { return std::ranges::any_of(mesh.geometries, emits); };
+  if (std::ranges::none_of(scene.lights, shines) && std::ranges::none_of(scene.meshes, hasEmitters)) return 0.0;
   const World world(scene);
   const Distribution emitters(world.parts, [](const Surface& s) { return static_cast<double>(s.emission); });
   const Distribution receivers(world.parts, [](const Surface&) { return 1.0; });

@@ -1093,7 +1093,7 @@ TEST_F(SessionReload, LeavesOutValuesThatAVersionDoesNotAccept) {
   ASSERT_NE(find<ProgramReloaded>(events), nullptr);
   ASSERT_NE(find<Warning>(events), nullptr);
   const std::string text = find<Warning>(events)->text;
-  EXPECT_TRUE(text.starts_with("'shade=1' does not count any more: unknown parameter 'shade'")) << text;
+  EXPECT_TRUE(text.starts_with("'shade=1' no longer applies: unknown parameter 'shade'")) << text;
   EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[0], 0);
   EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[1], 255) << "the other value stays";
   EXPECT_EQ(session->state().assignments, std::vector<std::string>{"green=1"});
