@@ -217,7 +217,7 @@ test("the last of several lessons that are chosen quickly is shown", async () =>
 
 test("going back while a lesson is being opened stays at the lesson that is shown", async () => {
   const page = await lab.open("#lesson=05_shadow");
-  await page.locator(".program-title", { hasText: "05_shadow" }).waitFor();
+  await page.getByRole("heading", { name: "Lesson 05" }).waitFor(); // has requested the lesson's program
   const programs = await holdRequests(page, programRequests);
   await page.evaluate(() => (location.hash = "#lesson=01_first_ray"));
   await until(() => programs.count > 0);

@@ -785,7 +785,7 @@ TEST_F(WindowTest, DrawsTheRaysOfTheExplainedPixel) {
     const io::Image plain = viewer.window().screenshot();
     white = 0;
     for (int v = top; v < bottom; ++v)
-      for (int u = left; u < right; ++u) {
+      for (int u = left; u < right - 8; ++u) {  // a click beside it would grab the edge of the panels
         const auto column = static_cast<std::uint32_t>(u), row = static_cast<std::uint32_t>(v);
         const auto with = rays.pixel<std::uint8_t>(column, row), without = plain.pixel<std::uint8_t>(column, row);
         if (std::min({with[0], with[1], with[2]}) < 255 || std::min({without[0], without[1], without[2]}) == 255)
