@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/luminance.h"
 #include "base/plural.h"
 #include "render/tone_map/tone_map.h"
 
@@ -43,6 +44,21 @@ std::string targetMissedText(const RenderResult& result) {
     return missed + ": the error is unknown, because some pixels exceed the range of the film's sums";
   return fmt::format("{}: the error is {:.2g} %, and at most {:.2g} % in 95 % of the tiles", missed,
                      100.0 * result.error.upper, 100.0 * result.error.tiles);
+}
+
+// A mean below the first step of an 8-bit image. Of the path tracer, whose users look for a fault then; other programs can
+// have reasons.
+bool isBlack(const RenderResult& result) {
+  constexpr double kBlack = 1e-4;
+  if (result.provenance.program != "pathtracer" || !result.film || !result.film->stores(0)) return false;
+  const io::Image image = result.film->image(0);
+  const auto samples = image.samples<float>();
+  double sum = 0.0, alpha = 0.0;
+  for (std::size_t i = 0; i + 3 < samples.size(); i += 4) {
+    sum += luminance(vec3(samples[i], samples[i + 1], samples[i + 2]));
+    alpha += samples[i + 3];
+  }
+  return alpha > 0.0 && sum <= kBlack * alpha;
 }
 
 // "; the first is at pixel (34, 120), counted from the top left corner"
@@ -87,6 +103,11 @@ double RenderResult::raysPerSecond() const {
 std::vector<std::string> resultWarnings(const RenderResult& result) {
   std::vector<std::string> warnings;
   if (result.targetMissed && !result.interrupted) warnings.push_back(targetMissedText(result));
+  if (isBlack(result))
+    warnings.push_back(
+        "the image is black, or nearly so, because hardly any light reaches the camera; a closed surface around the "
+        "camera keeps "
+        "the environment and the sun out");
   for (const Diagnostic& finding : runFindings(result))
     warnings.push_back(finding.text +
                        (finding.id.empty() ? "" : fmt::format("; see 'quintet explain {}'", finding.id)));

@@ -43,7 +43,7 @@ Environment defaultEnvironment() {
       weights += sine;
     }
   }
-  const dvec3 scale = weights / sum;
+  const dvec3 scale = kDefaultRadiance * weights / sum;
   auto samples = environment.image.samples<float>();
   for (std::size_t i = 0; i < values.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) samples[3 * i + c] = static_cast<float>(values[i][c] * scale[c]);

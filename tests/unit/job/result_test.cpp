@@ -50,6 +50,26 @@ TEST(ResultWarnings, AnInterruptedRenderIsExpectedToMissItsTarget) {
   EXPECT_THAT(resultWarnings(result), IsEmpty());
 }
 
+TEST(ResultWarnings, OfABlackImageOfThePathTracer) {
+  const auto warningsOf = [](const char* program, const vec4& color) {
+    render::FilmState film;
+    film.region.width = 2;
+    film.region.height = 1;
+    film.planes.emplace_back();
+    film.planes[0].pixel = program::OutputPixel::center;
+    film.planes[0].values = {vec4(0, 0, 0, 1), color};
+    RenderResult result;
+    result.provenance.program = program;
+    result.film = viewOf(std::move(film), false);
+    return resultWarnings(result);
+  };
+  EXPECT_THAT(warningsOf("pathtracer", vec4(0, 0, 0, 1)), ElementsAre(HasSubstr("black")));
+  EXPECT_THAT(warningsOf("pathtracer", vec4(0, 1e-6f, 0, 1)), ElementsAre(HasSubstr("nearly")));
+  EXPECT_THAT(warningsOf("pathtracer", vec4(0, 0.001f, 0, 1)), IsEmpty());
+  EXPECT_THAT(warningsOf("pathtracer", vec4(0)), ElementsAre(HasSubstr("black"))) << "the other pixel is covered";
+  EXPECT_THAT(warningsOf("depth", vec4(0, 0, 0, 1)), IsEmpty());
+}
+
 TEST(ResultWarnings, CountDiscardedSamples) {
   RenderResult result;
   result.provenance.droppedSamples = 1;
