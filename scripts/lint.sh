@@ -6,6 +6,8 @@
 #   lint.sh --cpp        checks only C++
 #   lint.sh --scripts    checks only the scripts
 #   lint.sh --tidy [FILE…]   runs clang-tidy 14 on the C++ sources (default: all; slow) with build/release
+#   lint.sh --changed [COMMIT]   checks the format, and runs clang-tidy on the sources that differ from COMMIT (default: HEAD),
+#                        and on one source for each header that differs
 # Exit status: 1 for problems, 77 if no tool is installed. With CI=true a tool that apt can install must be installed.
 # The headers below shaders/, which C++ and GLSL share, are formatted by hand.
 set -uo pipefail
@@ -89,11 +91,34 @@ checkTidy() {
   fi
 }
 
+# changedSources COMMIT: prints the sources that differ from COMMIT, and for each header that differs its own source, or else the
+# first one that includes it. Files that git does not know yet count, too.
+changedSources() {
+  local file
+  { git diff --name-only --diff-filter=d "$1" && git ls-files --others --exclude-standard; } | while read -r file; do
+    case $file in
+      apps/*.cpp | examples/*.cpp | layer/*.cpp | src/*.cpp) echo "$file" ;;
+      apps/*.h | layer/*.h | src/*.h)
+        if [ -e "${file%.h}.cpp" ]; then echo "${file%.h}.cpp"
+        else grep -rlF --include='*.cpp' "#include \"${file#*/}\"" apps examples layer src | sort | head -n 1; fi ;;
+    esac
+  done | sort -u
+}
+
+checkChanged() {
+  local files
+  git rev-parse --verify --quiet "$1^{commit}" >/dev/null || { echo "lint: no commit $1" >&2; exit 2; }
+  checkCpp
+  mapfile -t files < <(changedSources "$1")
+  if ((${#files[@]})); then checkTidy "${files[@]}"; else echo "lint: clang-tidy: no source has changed"; fi
+}
+
 case ${1-} in
   '' | --fix) checkCpp "${1-}"; checkScripts ;;
   --cpp) checkCpp ;;
   --scripts) checkScripts ;;
   --tidy) shift; checkTidy "$@" ;;
+  --changed) checkChanged "${2-HEAD}" ;;
   *) sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 exit "$status"

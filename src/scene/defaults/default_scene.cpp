@@ -89,8 +89,8 @@ Geometry sphere() {
   for (std::uint32_t row = 0; row < kSphereRows; ++row) {
     for (std::uint32_t column = 0; column < kSphereColumns; ++column) {
       const std::uint32_t a = vertex(row, column), b = vertex(row + 1, column);
-      if (row + 1 < kSphereRows) geometry.triangles.push_back({a, b, b + 1});
-      if (row > 0) geometry.triangles.push_back({a, b + 1, a + 1});
+      if (row + 1 < kSphereRows) geometry.triangles.emplace_back(a, b, b + 1);
+      if (row > 0) geometry.triangles.emplace_back(a, b + 1, a + 1);
     }
   }
   return geometry;
