@@ -46,7 +46,7 @@ set(QUINTET_NIGHTLY_SUITES gpu.PaneWeights unit.Mutation)
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
 
 # CTest starts the longest suites first, but has no times in a new clone. These are the seconds of suites above ten
-# seconds on four cores without a GPU (docs/measurements.md).
+# seconds on four cores without a GPU.
 set(QUINTET_SUITE_COSTS
   gpu.PaneWeights 70 gpu.SolidAlpha 50 gpu.SolidLight 50 gpu.Aov 40 gpu.Renderer 40
   gpu.BsdfSampling 30 gpu.SolidFarSide 25 gpu.TriangleLight 25 gpu.LampBehindPanes 22 gpu.ErrorEstimate 22
