@@ -98,7 +98,7 @@ changedSources() {
   { git diff --name-only --diff-filter=d "$1" && git ls-files --others --exclude-standard; } | while read -r file; do
     case $file in
       apps/*.cpp | examples/*.cpp | layer/*.cpp | src/*.cpp) echo "$file" ;;
-      apps/*.h | layer/*.h | src/*.h)
+      apps/*.h | include/*.h | layer/*.h | src/*.h)
         if [ -e "${file%.h}.cpp" ]; then echo "${file%.h}.cpp"
         else grep -rlF --include='*.cpp' "#include \"${file#*/}\"" apps examples layer src | sort | head -n 1; fi ;;
     esac

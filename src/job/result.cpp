@@ -46,8 +46,7 @@ std::string targetMissedText(const RenderResult& result) {
                      100.0 * result.error.upper, 100.0 * result.error.tiles);
 }
 
-// A mean below the first step of an 8-bit image. Of the path tracer, whose users look for a fault then; other programs can
-// have reasons.
+// Whether the mean of the path tracer's image is 0 in 8 bits. Other programs can be black for a reason.
 bool isBlack(const RenderResult& result) {
   constexpr double kBlack = 1e-4;
   if (result.provenance.program != "pathtracer" || !result.film || !result.film->stores(0)) return false;
@@ -106,8 +105,7 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
   if (isBlack(result))
     warnings.push_back(
         "the image is black, or nearly so, because hardly any light reaches the camera; a closed surface around the "
-        "camera keeps "
-        "the environment and the sun out");
+        "camera keeps the environment and the sun out");
   for (const Diagnostic& finding : runFindings(result))
     warnings.push_back(finding.text +
                        (finding.id.empty() ? "" : fmt::format("; see 'quintet explain {}'", finding.id)));

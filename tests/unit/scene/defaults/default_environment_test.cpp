@@ -28,7 +28,7 @@ TEST(DefaultEnvironment, IsNeutralAndBrightFromAbove) {
       lowest = std::min({lowest, pixel[0], pixel[1], pixel[2]});
       if (pixel[1] > highest) highest = pixel[1], brightest = {x, y};
     }
-  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], scene::kDefaultRadiance, 1e-3);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], 0.7, 1e-3);
   EXPECT_GT(up.y, 2.0 * down.y);
   EXPECT_GT(lowest, 0.07f);
   EXPECT_GT(highest, 3.5f);
