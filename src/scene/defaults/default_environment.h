@@ -9,7 +9,7 @@
 namespace quintet::scene {
 
 // In this light, white surfaces stay below the white of a display, and keep their shading.
-inline constexpr double kDefaultRadiance = 0.7;
+inline constexpr double kDefaultRadiance = 0.6;
 
 // A studio sky of 512 × 256 floats. With h the y component of the direction:
 //   sky (h >= 0)     mix(horizon (1.00, 1.00, 1.00), zenith (0.55, 0.65, 0.80), h^0.6)

@@ -145,7 +145,6 @@ Scene defaultScene(const DefaultSceneOptions& options) {
   sun.direction = glm::normalize(vec3(-0.5f, -1.0f, -0.4f));
   scene.lights.push_back(sun);
   scene.environment = defaultEnvironment();
-  scene.environment.intensity = static_cast<float>(0.6 / kDefaultRadiance);
   return scene;
 }
 

@@ -14,7 +14,7 @@ struct DefaultSceneOptions {
   bool operator==(const DefaultSceneOptions&) const = default;
 };
 
-// About 3,000 triangles, a camera, a sun and the default environment with the mean radiance 0.6.
+// About 3,000 triangles, a camera, a sun and the default environment.
 Scene defaultScene(const DefaultSceneOptions& options = {});
 
 }  // namespace quintet::scene
