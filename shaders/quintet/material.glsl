@@ -6,6 +6,7 @@
 #include "bsdf/bsdf.glsl"
 #include "bsdf/dispersion.glsl"
 #include "features.glsl"
+#include "scattering.glsl"
 #include "shared/radiance.h"
 #include "surface.glsl"
 
@@ -18,9 +19,6 @@ struct Shading {
   vec3 absorption;  // 1/m inside the solid
   bool unlit;       // the surface emits and does not scatter
 };
-
-// Transmittance of a medium without end, for light from infinity: exp(-absorption · ∞).
-vec3 endlessTransmittance(vec3 absorption) { return vec3(lessThanEqual(absorption, vec3(0.0))); }
 
 vec3 toLocal(Shading s, vec3 v) { return vec3(dot(v, s.tangent), dot(v, s.bitangent), dot(v, s.normal)); }
 vec3 toWorld(Shading s, vec3 v) { return v.x * s.tangent + v.y * s.bitangent + v.z * s.normal; }

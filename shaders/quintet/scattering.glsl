@@ -11,6 +11,9 @@
 // A path scatters at most this number of times its limit of bounces inside of solids.
 const uint kScatteringsPerBounce = 64u;
 
+// Transmittance of a medium without end, for light from infinity: exp(-absorption · ∞).
+vec3 endlessTransmittance(vec3 absorption) { return vec3(lessThanEqual(absorption, vec3(0.0))); }
+
 // What a ray meets in a medium.
 struct MediumStep {
   float distance;  // meters, at which the ray scatters; below 0: it arrives at the end
@@ -19,7 +22,7 @@ struct MediumStep {
 
 // `attenuation`: absorption and scattering together, 1/m. `albedo`: the fraction of it that scatters. `throughput`: of the
 // path; the channel that determines the distance is chosen in proportion to it, and the densities of all channels are
-// combined (balance heuristic), so the weight is bounded. `end`: length of the ray.
+// combined (balance heuristic), so the weight is bounded. `end`: length of the ray; kInfinity if it leaves the scene.
 MediumStep sampleMediumStep(vec3 attenuation, vec3 albedo, vec3 throughput, float end, vec2 u) {
   const vec3 probability = throughput / max(throughput.x + throughput.y + throughput.z, 1e-37);
   const float chosen = u.x < probability.x                   ? attenuation.x
@@ -32,7 +35,8 @@ MediumStep sampleMediumStep(vec3 attenuation, vec3 albedo, vec3 throughput, floa
     s.distance = t;
     s.weight = albedo * density / max(dot(probability, density), 1e-37);
   } else {
-    const vec3 transmittance = exp(-attenuation * end);
+    // Not exp(-0 · kInfinity): an exponential to the base 2 overflows before the product, and is NaN.
+    const vec3 transmittance = end < kInfinity ? exp(-attenuation * end) : endlessTransmittance(attenuation);
     s.distance = -1.0;
     s.weight = transmittance / max(dot(probability, transmittance), 1e-37);
   }

@@ -55,6 +55,23 @@ TEST(Scattering, WhiteMediaAreInvisibleInAFurnace) {
   }
 }
 
+// A surface leads into a medium without an end. Red never reaches the sky: it scatters until the path ends. The medium neither absorbs
+// nor scatters green and blue.
+TEST(Scattering, OpenMediaAbsorbAllLightFromInfinity) {
+  scene::Material red = fog(vec3(0.8f));
+  red.attenuationColor = {0.5f, 1.0f, 1.0f};
+  red.specular = 0.0f;
+  SceneBuilder scene;
+  scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), red).sky(vec3(1.0f));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  for (const char* program : {"pathtracer", "naive"}) {
+    SCOPED_TRACE(program);
+    ImageOptions options = longPaths(program, 16);
+    options.set = {"bounces=1"};  // a path that returns to the surface ends there
+    expectUniform(renderImage(scene, options), {0.0f, 1.0f, 1.0f, 1.0f}, {.error = 0.03});
+  }
+}
+
 // Chandrasekhar's H function for isotropic scattering at μ = 1 (Radiative Transfer, 1950, section 38), by fixed-point
 // iteration of 1/H(μ) = sqrt(1-ω) + ω/2 ∫ μ' H(μ') / (μ + μ') dμ'.
 double chandrasekharH(double omega) {
@@ -75,24 +92,44 @@ double chandrasekharH(double omega) {
   return 1.0 / inverse(1.0);
 }
 
-// A half space under a uniform sky reflects 1 - sqrt(1-ω) H(μ) (the same book, section 42). In the second medium, light hardly
-// ever scatters.
+// A half space under a uniform sky reflects 1 - sqrt(1-ω) H(μ) (the same book, section 42).
+vec4 reflectanceOfHalfSpace(const vec3& multiple) {
+  vec4 exact(1.0f);
+  for (glm::length_t c = 0; c < 3; ++c) {
+    const double omega = singleAlbedo(static_cast<double>(multiple[c]));
+    exact[c] = static_cast<float>(1.0 - std::sqrt(1.0 - omega) * chandrasekharH(omega));
+  }
+  return exact;
+}
+
+SceneBuilder halfSpace(const vec3& multiple) {
+  SceneBuilder scene;
+  scene.add(box({-60, -60, -40}, {60, 60, 0}), fog(multiple)).sky(vec3(1.0f));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  return scene;
+}
+
+const vec3 kDark(0.02f, 0.04f, 0.06f);  // light hardly ever scatters
+
 TEST(Scattering, AHalfSpaceHasChandrasekharsReflectance) {
-  for (const vec3& multiple : {vec3(0.2f, 0.5f, 0.8f), vec3(0.02f, 0.04f, 0.06f)}) {
-    vec4 exact(1.0f);
-    for (glm::length_t c = 0; c < 3; ++c) {
-      const double omega = singleAlbedo(static_cast<double>(multiple[c]));
-      exact[c] = static_cast<float>(1.0 - std::sqrt(1.0 - omega) * chandrasekharH(omega));
-    }
-    SceneBuilder scene;
-    scene.add(box({-60, -60, -40}, {60, 60, 0}), fog(multiple)).sky(vec3(1.0f));
-    scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  for (const vec3& multiple : {vec3(0.2f, 0.5f, 0.8f), kDark}) {
+    const vec4 exact = reflectanceOfHalfSpace(multiple);
+    const SceneBuilder scene = halfSpace(multiple);
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(testing::Message() << program << " " << multiple.x);
       expectUniform(renderImage(scene, longPaths(program, multiple.x < 0.1f ? 32 : 16)), exact,
                     {.error = 0.04, .rounding = 1e-3});
     }
   }
+}
+
+// After the first event, about half of the paths survive (ω is 0.25 in blue), whatever their directions are. If only those that
+// the medium scatters forwards survived, hardly any path would return to the sky, which is found by no shadow ray.
+TEST(Scattering, RouletteIsIndependentOfTheDirection) {
+  ImageOptions options = longPaths("pathtracer", 64);
+  options.set.emplace_back("roulette_start=1");
+  expectUniform(renderImage(halfSpace(kDark), options), reflectanceOfHalfSpace(kDark),
+                {.error = 0.03, .rounding = 1e-3});
 }
 
 // A point light in the medium around the camera. Light that scatters once is ω ∫ p(θ) I/r² exp(-(t+r)) dt along the
