@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lights/light_scene.h"
+#include "render/scene_builder.h"
 
 namespace quintet::test {
 namespace {
@@ -144,6 +145,39 @@ TEST(TriangleLight, CoatOfTheEmitter) {
       if (!s.valid) continue;
       const double fresnel = 0.04 + 0.96 * std::pow(1.0 - std::abs(glm::dot(normal, dvec3(s.wi))), 5.0);
       ASSERT_NEAR(s.radiance.x, 3.0 * (1.0 - 0.8f * fresnel), 1e-4);
+    }
+  }
+}
+
+// Each texture has the value for a smooth coat over opaque emission at one set of coordinates, and the opposite at the other.
+TEST(TriangleLight, TexturesOfTheEmitterHaveTheirCoordinates) {
+  for (const int uvSet : {0, 1}) {
+    scene::Scene source = emissiveRectangle(vec3(3.0f), placement(1.0f));
+    source.meshes[0].geometries[0].uvs[0].assign(4, vec2(0.25f, 0.5f));
+    source.meshes[0].geometries[0].uvs[1].assign(4, vec2(0.75f, 0.5f));
+    const std::uint8_t left = uvSet == 0 ? 255 : 0, right = 255 - left;
+    const auto use = [&](std::uint8_t a, std::uint8_t b) {
+      scene::TextureUse result;
+      result.texture = addTexel(source, {a, a, a, a, b, b, b, b});
+      result.uvSet = uvSet;
+      return result;
+    };
+    scene::Material& m = source.materials[0];
+    m.clearcoat = m.clearcoatRoughness = 1.0f;
+    m.baseColorTexture = use(left, right);
+    m.emissiveTexture = use(left, right);
+    m.clearcoatTexture = use(left, right);
+    m.clearcoatRoughnessTexture = use(right, left);
+    const dvec3 normal =
+        glm::normalize(dvec3(glm::inverse(glm::transpose(glm::mat3(placement(1.0f)))) * vec3(0, 0, 1)));
+    m.alphaMode = uvSet == 0 ? scene::AlphaMode::blend : scene::AlphaMode::mask;
+    const LightScene scene(source, {});
+    const std::vector<LightOut> samples = sampleLights(scene, vec3(0.0f), 1000);
+    EXPECT_GT(std::ranges::count(samples, 1u, &LightOut::valid), 900) << "set " << uvSet;
+    for (const LightOut& s : samples) {
+      if (!s.valid) continue;
+      const double fresnel = 0.04 + 0.96 * std::pow(1.0 - std::abs(glm::dot(normal, dvec3(s.wi))), 5.0);
+      ASSERT_NEAR(s.radiance.x, 3.0 * (1.0 - fresnel), 1e-4) << "set " << uvSet;
     }
   }
 }

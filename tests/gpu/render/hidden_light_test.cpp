@@ -116,6 +116,25 @@ TEST(HiddenSurfaces, LightInASolidArrivesAtAFloor) {
   }
 }
 
+// A camera in a liquid, and a solid in the liquid whose surfaces do not exist: the outputs describe the floor.
+TEST(HiddenSurfaces, AreNotTheFirstSurface) {
+  const vec3 color(0.8f, 0.5f, 0.9f);
+  SceneBuilder scene;
+  scene.add(box({-30, -30, -4}, {30, 30, 4}), absorbing(clearGlass(1.0f, 1.0f), vec3(0.1f), 1.0f))
+      .add(quad({-30, -30, -2.5f}, {60, 0, 0}, {0, 60, 0}), lambert(color));
+  addHidden(scene, Hidden::one);
+  scene.camera(orthographic({0, 0, 0}, {0, 0, -1}, 0.5f));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  const Layers layers = renderLayers(device, scene.scene, program::loadProgram("pathtracer"), {"albedo", "normal"});
+  ASSERT_EQ(layers.planes.size(), 3u);
+  for (std::size_t i = 0; i < layers.planes[0].size(); ++i) {
+    const float samples = render::kBatchSamples;
+    EXPECT_EQ(layers.planes[0][i].w, samples) << "alpha of pixel " << i;
+    EXPECT_LT(glm::length(vec3(layers.planes[1][i]) / samples - color), 1e-5f) << "albedo of pixel " << i;
+    EXPECT_LT(glm::length(vec3(layers.planes[2][i]) / samples - vec3(0, 0, 1)), 1e-5f) << "normal of pixel " << i;
+  }
+}
+
 // Mean over the image, by batches.
 std::vector<Moments> imageMeans(const SceneBuilder& scene, const char* program, std::uint32_t batches) {
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment,

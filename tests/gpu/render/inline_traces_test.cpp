@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "harness.h"
+#include "pane_scenes.h"
 #include "program/inline_traces.h"
 #include "program/load.h"
 #include "rendered_image.h"
@@ -92,6 +93,60 @@ TEST(InlineTraces, PassAlphaAlike) {
   scene.scene.instances.back().worldFromObject = moved(0.5f, 0.2f, 0.1f);
   scene.scene.instances.back().flags = scene::kInstanceForceOpaque;
   expectSameHits(scene, {"pathtracer"});
+}
+
+// Shadow rays go down from z = 1. They meet sheets at z = 0 and -1: mask with an opaque and a clear half, blend over blend, blend over
+// both halves of a mask, and a sheet without alpha. Each layer of blend passes 3/4 of the light.
+TEST(InlineTraces, LightArrivesWhereAlphaLetsItPass) {
+  if (!testContext().info().rayQuery) GTEST_SKIP() << "the device has no ray queries";
+  SceneBuilder scene;
+  const auto sheet = [](float x, float width, float z) {
+    scene::Geometry g = quad({x, -1, z}, {width, 0, 0}, {0, 2, 0});
+    g.uvs[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    return g;
+  };
+  scene::Material halves = veil(lambert(vec3(0.5f)), 1.0f, scene::AlphaMode::mask);
+  halves.baseColorTexture.texture = addTexel(scene.scene, {255, 255, 255, 255, 255, 255, 255, 0});
+  const scene::Material quarter = veil(lambert(vec3(0.5f)), 0.25f, scene::AlphaMode::blend);
+  scene.add(sheet(0, 2, 0), halves)
+      .add(sheet(2, 2, 0), quarter)
+      .add(sheet(2, 1, -1), quarter)
+      .add(sheet(3, 2, -1), halves)
+      .add(sheet(6, 1, 0), lambert(vec3(0.5f)));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  device.prepareFor(1);
+  const gpu::Buffer frame =
+      gpu::makeBufferOf(testContext(), std::vector<shared::Frame>{device.frameTemplate()}, 0, "frame");
+  struct ShadowRay {
+    float x, tmax;
+    float transmittance;  // 0: no light arrives
+  };
+  const std::vector<ShadowRay> rays{{0.5f, 9, 0.0f},    {1.5f, 9, 1.0f},     {0.5f, 0.5f, 1.0f}, {0.5f, 0, 1.0f},
+                                    {2.5f, 9, 0.5625f}, {2.5f, 1.5f, 0.75f}, {3.5f, 9, 0.0f},    {3.5f, 1.5f, 0.75f},
+                                    {4.5f, 9, 1.0f},    {5.5f, 9, 1.0f},     {6.5f, 9, 0.0f},    {6.5f, 0.5f, 1.0f}};
+  struct Found {
+    vec3 transmittance;
+    std::uint32_t visible;
+  };
+  const auto found = runCompute<Found>(R"(
+    #include <quintet/ray_query.glsl>
+    layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
+    struct ShadowRay { float x; float tmax; float transmittance; };
+    struct Found { vec3 transmittance; uint visible; };
+    #define In ShadowRay
+    #define Out Found
+    Out run(uint index, In ray) {
+      Found a;
+      a.visible = queryVisible(topLevelAS, vec3(ray.x, 0.3, 1.0), vec3(0.0, 0.0, -1.0), ray.tmax, a.transmittance) ? 1u : 0u;
+      return a;
+    }
+  )",
+                                       rays, rays.size(), {.set = &device.set(), .frame = frame.address()});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const vec3 arriving = found[i].visible != 0 ? found[i].transmittance : vec3(0.0f);
+    EXPECT_EQ(arriving, vec3(rays[i].transmittance)) << i;
+    EXPECT_EQ(found[i].visible != 0, rays[i].transmittance > 0.0f) << i;
+  }
 }
 
 TEST(InlineTraces, LeavePanesAndBoxesToShaders) {

@@ -202,6 +202,30 @@ TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
   }
 }
 
+// The highest priority fills the space, wherever it is in the set. Of equal ones, the solid that was entered last does.
+TEST(NestedMedia, TheHighestPriorityOfASetFillsTheSpace) {
+  SceneBuilder builder;
+  for (const float priority : {0.0f, 1.0f, 2.0f, 2.0f, -1.0f})
+    builder.add(box(vec3(-1.0f), vec3(1.0f)), medium(1.5f, vec3(1.0f), priority));
+  const LightScene device(builder.scene, {});
+  struct MediaSet {
+    uvec4 media;
+    std::uint32_t filling;
+  };
+  const std::vector<MediaSet> sets{{{3, 1, 2, 5}, 3}, {{1, 3, 2, 5}, 3}, {{1, 2, 3, 5}, 3}, {{1, 2, 5, 3}, 3},
+                                   {{3, 4, 1, 2}, 3}, {{1, 4, 5, 3}, 4}, {{2, 1, 3, 4}, 3}, {{5, 1, 0, 0}, 1},
+                                   {{1, 5, 0, 0}, 1}, {{5, 0, 0, 0}, 5}, {{0, 0, 0, 0}, 0}};
+  const auto filling = runCompute<std::uint32_t>(R"(
+    #include <quintet/media.glsl>
+    struct MediaSet { uvec4 media; uint filling; };
+    #define In MediaSet
+    #define Out uint
+    Out run(uint index, In value) { return fillingMedium(value.media); }
+  )",
+                                                 sets, sets.size(), device.options());
+  for (std::size_t i = 0; i < sets.size(); ++i) EXPECT_EQ(filling[i], sets[i].filling) << i;
+}
+
 // In a slab of index n with transmittance a, at the distance d from its back: L = a^d (1-R) / (1 - R² a²), with the
 // reflections between both sides. The radiance in the slab is n² L; the camera measures L.
 TEST(CameraInMedium, SeesTheAbsorptionFromTheStart) {

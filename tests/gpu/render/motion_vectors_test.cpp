@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -38,6 +39,12 @@ class MotionShot {
     renderer_.setShutter(shutter, camera_);
     renderer_.renderBatch();
     return {plane("motion"), plane("position"), plane("primitive_id")};
+  }
+
+  // Returns the number of rays of the batch that at() has rendered, and of one more.
+  std::uint64_t raysOfTwoBatches() {
+    renderer_.renderBatch();
+    return renderer_.rays().rays;
   }
 
  private:
@@ -132,6 +139,15 @@ TEST(MotionVectors, FollowMorphTargets) {
   }
 }
 
+// A triangle that stands still while its scene's animation moves a node without a mesh.
+scene::Scene stillTriangle() {
+  AnimationBuilder still;
+  still.addTriangle();
+  still.add("nodes", {{"name", "empty"}});
+  still.addChannel(1, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
+  return still.loadAnimated();
+}
+
 // The motion of the camera counts, for deformed meshes, moving instances, and what stands still.
 TEST(MotionVectors, ContainTheMotionOfTheCamera) {
   const MovingCamera camera = [](double frame) {
@@ -140,14 +156,42 @@ TEST(MotionVectors, ContainTheMotionOfTheCamera) {
   };
   AnimationBuilder moving = movingTriangle();
   moving.addChannel(1, "translation", {0, 1}, {0, 0, 0, 2, 1, 0});
-  AnimationBuilder still;
-  still.addTriangle();
-  still.add("nodes", {{"name", "empty"}});
-  still.addChannel(1, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});  // a node without a mesh
-  for (const scene::Scene& scene : {bendingStrip().loadAnimated(), moving.loadAnimated(), still.loadAnimated()}) {
+  for (const scene::Scene& scene : {bendingStrip().loadAnimated(), moving.loadAnimated(), stillTriangle()}) {
     MotionShot shot(scene, camera);
     EXPECT_GT(expectHostMotion(shot.at(8), scene, camera, 8), 0.05f);
   }
+}
+
+// A point that was behind the camera has no position in the previous image. An orthographic camera has one for each point.
+TEST(MotionVectors, AreZeroWhereAPointWasBehindThePreviousCamera) {
+  const scene::Scene scene = stillTriangle();
+  const scene::Camera facing = perspective({0.3f, 0.2f, 3}, {0.3f, 0.2f, 0}, 25);
+  const scene::Camera away = perspective({0.3f, 0.2f, 3}, {0.3f, 0.2f, 9}, 25);
+  const scene::Camera flat = orthographic({0.3f, 0.2f, 3}, {0.3f, 0.2f, 0}, 1);
+  const scene::Camera flatBehind = orthographic({0, 0, -1}, {0, 0, -9}, 1);  // the triangle is behind it, too
+  const std::array cameras{away, facing, away, flat, flatBehind, facing};
+  const MovingCamera camera = [&](double frame) { return cameras.at(static_cast<std::size_t>(frame)); };
+  MotionShot shot(scene, camera);
+  for (const int frame : {1, 3}) {
+    const MotionLayers layers = shot.at(frame);
+    EXPECT_GT(std::ranges::count_if(layers.primitive, [](const vec4& id) { return id.x > 0.0f; }), 10) << frame;
+    for (const vec4& motion : layers.motion) EXPECT_EQ(vec2(motion), vec2(0.0f)) << frame;
+  }
+  EXPECT_GT(expectHostMotion(shot.at(5), scene, camera, 5), 0.1f);
+}
+
+// The camera flies at the speed of the triangle, 10 m per frame, at a distance of 4 m. So the previous position of the triangle is
+// behind the current camera, but not behind the previous one.
+TEST(MotionVectors, FollowPointsFromBehindTheCurrentCamera) {
+  AnimationBuilder flying = movingTriangle();
+  flying.addChannel(1, "translation", {0, 1}, {0, 0, 0, 0, 0, -240});  // 24 frames
+  const scene::Scene scene = flying.loadAnimated();
+  const MovingCamera camera = [](double frame) {
+    const auto t = static_cast<float>(frame);
+    return perspective({0.4f + 0.1f * t, 0.4f, 4 - 10 * t}, {0.4f + 0.1f * t, 0.4f, -10 * t}, 25);
+  };
+  MotionShot shot(scene, camera);
+  EXPECT_GT(expectHostMotion(shot.at(1), scene, camera, 1), 0.1f);
 }
 
 // A camera with keyframes in a scene file moves as cameras that are computed for each frame.
@@ -181,6 +225,14 @@ TEST(MotionVectors, ShowTheMiddleOfTheShutter) {
   MotionShot shot(scene, camera);
   const MotionLayers blurred = shot.at(10, render::ShutterInterval{9, 12});
   EXPECT_GT(expectHostMotion(blurred, scene, camera, 10.5), 0.3f);
+}
+
+// Without bounces, each sample has one ray. The ray that finds the motion is traced once for each pixel, not for each sample.
+TEST(MotionVectors, NeedOneRayOfEachPixel) {
+  MotionShot shot(stillTriangle(), standing(perspective({0.3f, 0.2f, 3}, {0.3f, 0.2f, 0}, 25)));
+  shot.at(1);  // launches each sample alone, because the renderer does not know yet how long it takes
+  shot.at(2);
+  EXPECT_EQ(shot.raysOfTwoBatches(), kMotionSize * kMotionSize * (2 * render::kBatchSamples + 1));
 }
 
 }  // namespace

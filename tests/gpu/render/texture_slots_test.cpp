@@ -180,7 +180,8 @@ TEST(TextureSlots, ReadTheirChannelsAtTheTransformedCoordinates) {
   EXPECT_GT(compared, 150);
 }
 
-// Two normal maps with their own scales, in the tangent frame: that of the surface and that of the clearcoat.
+// Two normal maps with their own scales, in the tangent frame: that of the surface and that of the clearcoat. From behind, both
+// normals are reversed.
 TEST(TextureSlots, NormalMapsHaveTheirOwnScales) {
   scene::Scene scene = texturedTriangle();
   scene::Geometry& g = scene.meshes[0].geometries[0];
@@ -199,27 +200,31 @@ TEST(TextureSlots, NormalMapsHaveTheirOwnScales) {
     vec3 normal, coat;
   };
   const LightScene device(scene, {});
+  const std::vector<vec3> directions{{0, 0, 1}, {0, 0, -1}};
   const auto found = runCompute<Out>(R"(
     #include <quintet/material.glsl>
     struct Out_ { vec3 normal; vec3 coat; };
+    #define In vec3
     #define Out Out_
-    Out run(uint index) {
+    Out run(uint index, vec3 wo) {
       HitPayload hit;
       hit.t = 1.0;
       hit.instance = hit.geometry = hit.primitive = 0u;
       hit.barycentric = vec2(0.3, 0.3);
-      const vec3 wo = vec3(0.0, 0.0, 1.0);
       const Shading r = shadeSurface(fetchSurface(hit, wo), wo);
       return Out(r.normal, toWorld(r, r.bsdf.clearcoatNormal));
     }
   )",
-                                     1, device.options());
+                                     directions, directions.size(), device.options());
   const auto expected = [](const dvec3& bytes, double scale) {
     const dvec3 t = 2.0 / 255.0 * bytes - 1.0;
     return glm::normalize(dvec3(-scale * t.y, scale * t.x, t.z));
   };
-  EXPECT_LT(glm::length(dvec3(found[0].normal) - expected({160, 90, 230}, 0.7)), 1e-5);
-  EXPECT_LT(glm::length(dvec3(found[0].coat) - expected({100, 150, 240}, 0.4)), 1e-5);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const double side = directions[i].z;
+    EXPECT_LT(glm::length(dvec3(found[i].normal) - side * expected({160, 90, 230}, 0.7)), 1e-5) << i;
+    EXPECT_LT(glm::length(dvec3(found[i].coat) - side * expected({100, 150, 240}, 0.4)), 1e-5) << i;
+  }
 }
 
 // The texture turns the tangent, counterclockwise from that of the surface, and the rotation of the material adds to it.

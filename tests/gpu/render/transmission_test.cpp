@@ -198,6 +198,24 @@ TEST(Alpha, TestsSurfacesOfOneMeshIndependently) {
                 {.error = 0.03});
 }
 
+// The left texel is opaque, the right one is clear. One set of coordinates selects the left one, the other set the right one.
+TEST(Alpha, ReadsItsTextureAtTheSetOfCoordinates) {
+  for (const scene::AlphaMode mode : {scene::AlphaMode::mask, scene::AlphaMode::blend}) {
+    for (const int uvSet : {0, 1}) {
+      SCOPED_TRACE(testing::Message() << (mode == scene::AlphaMode::mask ? "mask" : "blend") << ", set " << uvSet);
+      scene::Geometry sheet = kSheet;
+      sheet.uvs[0].assign(4, vec2(0.25f, 0.5f));
+      sheet.uvs[1].assign(4, vec2(0.75f, 0.5f));
+      SceneBuilder scene = lookingThrough(sheet, veil({0.2f, 3.0f, 0.0f}, 1.0f, mode), 0.0f);
+      scene::TextureUse& texture = scene.scene.materials[0].baseColorTexture;
+      texture.texture = addTexel(scene.scene, {255, 255, 255, 255, 255, 255, 255, 0});
+      texture.uvSet = uvSet;
+      expectUniform(renderImage(scene, batches(2, 4)), vec4(uvSet == 0 ? vec3(0.2f, 3.0f, 0.0f) : kBehind, 1.0f),
+                    {.error = 1e-4});
+    }
+  }
+}
+
 TEST(Alpha, MasksBelowTheCutoff) {
   for (const float cutoff : {0.2f, 0.5f}) {
     const SceneBuilder scene =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q201 to Q203, Q401, Q402, Q501 to Q506, Q601 to Q605, Q801, Q802; results of the check.
+// Q201 to Q203, Q401, Q402, Q501 to Q506, Q509, Q601 to Q605, Q801, Q802; results of the check.
 #include "check_test_support.h"
 
 namespace quintet::check {
@@ -163,6 +163,18 @@ TEST(CheckArguments, Q506ReportsAShadowRayWithTheRadianceMissShader) {
   ASSERT_EQ(textOf(checkFiles(files)), "");
   EXPECT_TRUE(reports(checkEdited(files, "surface.rchit", "kMiss_shadow,\n", "kMiss_primary,\n"),
                       "Q506 surface.rchit:13:3 ", {"'sky.rmiss' (index 0)", "'lit.rmiss' (index 1)"}));
+}
+
+TEST(CheckArguments, Q509StatesTheLimitsOfTheInterval) {
+  const auto withInterval = [](const std::string& tmin, const std::string& tmax) {
+    return traceWith("0.0, vec3(0, 0, 1), 1e30", tmin + ", vec3(0, 0, 1), " + tmax);
+  };
+  const std::string x = "clamp(float(gl_LaunchIDEXT.x), ", start = "Q509 main.rgen:10:3 ",
+                    end = ": the interval is empty\n";
+  EXPECT_EQ(withInterval("1.0", x + "0.25, 0.5)"), start + "tmin is 1 and tmax is at most 0.5" + end);
+  EXPECT_EQ(withInterval(x + "1.0, 2.0)", x + "0.25, 0.5)"),
+            start + "tmin is at least 1 and tmax is at most 0.5" + end);
+  EXPECT_EQ(withInterval(x + "1.0, 2.0)", x + "0.5, 1.0)"), "") << "both can be 1";
 }
 
 TEST(CheckGeometry, Q601ReportsProceduralGeometryWithoutIntersectionShader) {

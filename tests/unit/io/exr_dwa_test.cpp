@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "io/exr/dwa_limits.h"
@@ -107,6 +108,43 @@ TEST(ExrDwaTest, DecodesTheFileOnlyForLargeValues) {
   EXPECT_TRUE(DwaLimits(image, channels, 0).canOverflow(5000.0f));
   image.channels[0].samples[63] = -2000.0f;
   EXPECT_TRUE(DwaLimits(image, channels, 0).canOverflow(45.0f));
+}
+
+// The file is encoded without loss. The pixel `broken` is infinite in it, so the limit is half of the largest value of its block.
+// Blocks begin at the borders of tiles, so those at the right and lower borders can be smaller than 8 x 8 pixels.
+TEST(ExrDwaTest, LimitsOnlyTheBlockWithAnInfiniteValue) {
+  constexpr std::size_t kSide = 30, kPixels = kSide * kSide;
+  ExrImage image{kSide, kSide, {}};
+  for (const char* name : {"R", "G", "lights.R"}) {
+    ExrChannel& channel = image.channels.emplace_back(ExrChannel{name, ExrType::f32, std::vector<float>(kPixels)});
+    for (std::size_t i = 0; i < kPixels; ++i) channel.samples[i] = 20000.0f + 40.0f * static_cast<float>(i);
+  }
+  const std::vector<const ExrChannel*> channels{&image.channels[0], &image.channels[1], &image.channels[2]};
+  for (const std::uint32_t tile : {0u, 8u, 12u, 13u})
+    for (std::size_t broken = 0; broken < kPixels; broken += 7) {
+      ExrImage encoded = image;
+      encoded.channels[0].samples[broken] = std::numeric_limits<float>::infinity();
+      DwaLimits limits(image, channels, tile);
+      ASSERT_TRUE(limits.tighten(encodeExr(encoded, {ExrCompression::none, {}, tile}), 0));
+      const auto inBlock = [&](std::size_t a, std::size_t b) {
+        return tile == 0 ? a / 8 == b / 8 : a / tile == b / tile && a % tile / 8 == b % tile / 8;
+      };
+      const std::vector<float>& values = image.channels[0].samples;
+      std::vector<float> expected = values;
+      std::vector<std::size_t> block;
+      for (std::size_t i = 0; i < kPixels; ++i)
+        if (inBlock(i % kSide, broken % kSide) && inBlock(i / kSide, broken / kSide)) block.push_back(i);
+      for (const std::size_t i : block) expected[i] = std::min(values[i], 0.5f * values[block.back()]);
+      for (const ExrChannel& channel : image.channels) {
+        std::vector<float> clamped = values;
+        const std::span<float> upper = std::span(clamped).first(10 * kSide),
+                               rest = std::span(clamped).subspan(10 * kSide);
+        limits.clamp(channel, 0, upper);
+        limits.clamp(channel, upper.size(), rest);
+        EXPECT_EQ(clamped, channel.name == "lights.R" ? values : expected)
+            << channel.name << ", tiles " << tile << ", pixel " << broken % kSide << ' ' << broken / kSide;
+      }
+    }
 }
 
 }  // namespace

@@ -45,6 +45,14 @@ TEST(PlanNextBatches, DistributesTheRemainingSamples) {
   EXPECT_LE(render::averageSamples(kRegion, {film.film.counts.ranges, plan}), 160.0);
 }
 
+// One more batch in the noisy tile gives 34 samples on average. That is the limit, or closer to it than 32 samples are.
+TEST(PlanNextBatches, AddsABatchThatComesCloserToTheLimit) {
+  const render::FilmFile film = filmOf(8);
+  for (const std::uint64_t limit : {34u, 35u})
+    EXPECT_THAT(planFor(film, estimateOf(film, 0.1, 3.0), limitsOf(limit, {})), testing::ElementsAre(8, 8, 9, 9))
+        << limit;
+}
+
 TEST(PlanNextBatches, IsEmptyAtTheLimit) {
   const render::FilmFile film = filmOf(8);
   const render::ErrorEstimate estimate = estimateOf(film, 0.1, 3.0);

@@ -138,6 +138,20 @@ TEST(ChooseCamera, Lens) {
   EXPECT_THROW(chooseCamera(scene, request, 0), UsageError);
 }
 
+// The center of the scene is 3 along the optical axis.
+TEST(ChooseCamera, FocusesOnThePointThatItLooksAt) {
+  const scene::Scene scene = makeScene();
+  CameraRequest request;
+  request.lookFrom = vec3(1, 2, 3);
+  request.lookAt = vec3(1, 2, -7);
+  request.apertureRadius = 0.1f;
+  const scene::Camera camera = chooseCamera(scene, request, 0).camera;
+  EXPECT_FLOAT_EQ(camera.apertureRadius, 0.1f);
+  EXPECT_FLOAT_EQ(camera.focusDistance, 10.0f);
+  request.focusDistance = 2.5f;
+  EXPECT_FLOAT_EQ(chooseCamera(scene, request, 0).camera.focusDistance, 2.5f);
+}
+
 TEST(ChooseImageSize, FollowsTheAspect) {
   scene::Camera camera;
   EXPECT_EQ(chooseImageSize({0, 0}, camera), uvec2(1280, 720));

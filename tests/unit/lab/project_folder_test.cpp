@@ -161,6 +161,18 @@ TEST_F(ProjectFolderTest, ListsFilesInOrderWithoutHiddenOnes) {
   EXPECT_GT(listing.files[1].modified, 1.5e9);
 }
 
+// The listing has the files of the project folder and of seven levels of folders below it.
+TEST_F(ProjectFolderTest, ListsFilesInEightLevelsOfFolders) {
+  fs::create_directories(path("1/2/3/4/5/6/7/8"));
+  writeFile(path("1/2/3/4/5/6/7/listed.glsl"), "x");
+  writeFile(path("1/2/3/4/5/6/7/8/deep.glsl"), "x");
+  const ProjectFolder::Listing listing = project_->list();
+  ASSERT_EQ(listing.files.size(), 2u);
+  EXPECT_EQ(listing.files[0].name, "1/2/3/4/5/6/7/listed.glsl");
+  EXPECT_EQ(listing.files[1].name, "a.glsl");
+  EXPECT_EQ(project_->read("1/2/3/4/5/6/7/8/deep.glsl"), "x") << "a name can be deeper";
+}
+
 TEST_F(ProjectFolderTest, RequiresAFolder) {
   EXPECT_THROW(ProjectFolder(path("missing")), FileError);
   EXPECT_THROW(ProjectFolder(path("a.glsl")), FileError);

@@ -78,6 +78,18 @@ TEST(LaunchSizes, AreShortForHeavyPrograms) {
       << "one row";
 }
 
+// A launch of unknown pixels begins with one sample of each. The first launch has 1024 pixel samples per
+// second. LaunchSizes expects a quarter of this rate, so it expects that 64 pixels take 0.25 seconds.
+TEST(LaunchSizes, DivideByTheSamplesOnceTheImageIsKnown) {
+  LaunchSizes sizes = cpu();
+  sizes.add(512, 0.5);
+  for (const std::uint32_t samples : {1u, 2u, 16u}) EXPECT_EQ(sizes.rows(4, 0, 360, samples), 16u) << samples;
+  sizes.endPass(4 * 360, 4 * 360);
+  EXPECT_EQ(sizes.rows(4, 0, 360, 1), 16u);
+  EXPECT_EQ(sizes.rows(4, 0, 360, 2), 8u);
+  EXPECT_EQ(sizes.rows(4, 0, 360, 16), 1u);
+}
+
 // A cheap sky above objects that are 50 times as slow.
 TEST(LaunchSizes, AreShortWhereTheImageGetsSlow) {
   const auto cost = [](std::uint32_t row) { return row < 200 ? 2e-6 : 1e-4; };

@@ -81,6 +81,19 @@ TEST(FalseColor, OutliersDoNotDecideTheScale) {
   EXPECT_EQ(falseColorScale(imageOf(4, {0.0f, 0.0f, 0.0f, 5.0f}), 0.0f).maximum, 5.0f);
 }
 
+TEST(FalseColor, TheScaleIsThePercentileOnlyBelowHalfOfTheLargest) {
+  std::vector<float> values(200, 0.5f);
+  values[7] = 2.0f;
+  values[8] = 1.0f;  // the 99th percentile: 198 values are smaller
+  FalseColorScale scale = falseColorScale(imageOf(200, values), 0.0f);
+  EXPECT_EQ(scale.maximum, 2.0f);
+  EXPECT_FALSE(scale.exceeded);
+  values[8] = std::nextafter(1.0f, 0.0f);
+  scale = falseColorScale(imageOf(200, values), 0.0f);
+  EXPECT_EQ(scale.maximum, values[8]);
+  EXPECT_TRUE(scale.exceeded);
+}
+
 TEST(FalseColor, ColorsTheFirstChannel) {
   const io::Image image =
       falseColor(imageOf(4, {0.0f, 2.0f, 1.0f, kNan}), {.scale = {2.0f, false}, .legend = false, .bits = 8});

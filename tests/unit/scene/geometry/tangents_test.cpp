@@ -300,6 +300,29 @@ TEST(Tangents, GivesFlatTrianglesTheirOwnVertices) {
   EXPECT_EQ(g.uvs[0][5], vec2(0, 0));
 }
 
+// The order is that of tangents.h. Each of the textures has a different frame.
+TEST(Tangents, FollowTheFirstTextureThatNeedsThem) {
+  Geometry plain = square();
+  plain.uvs[1] = {{1, 1}, {1, 0}, {0, 0}, {0, 1}};  // rotated by 90°
+  scene::Material material;
+  EXPECT_FALSE(scene::addTangents(plain, material));
+  const auto expectTangent = [&](const vec4& tangent) {
+    Geometry g = plain;
+    EXPECT_TRUE(scene::addTangents(g, material));
+    EXPECT_THAT(g.tangents, testing::AllOf(testing::SizeIs(4), Each(IsNear4(tangent))));
+  };
+  material.anisotropy = 0.5f;
+  expectTangent(vec4(1, 0, 0, 1));  // of the first texture coordinates
+  material.anisotropyTexture.texture = 0;
+  material.anisotropyTexture.rotation = kPi;
+  expectTangent(vec4(-1, 0, 0, 1));
+  material.clearcoatNormalTexture.texture = 0;
+  material.clearcoatNormalTexture.uvSet = 1;
+  expectTangent(vec4(0, -1, 0, 1));
+  material.normalTexture.texture = 0;
+  expectTangent(vec4(1, 0, 0, 1));
+}
+
 // The importer generates tangents only for normal maps and anisotropy, also for flat shading.
 TEST(Tangents, GeneratesTangentsForNormalMaps) {
   GltfBuilder builder;
