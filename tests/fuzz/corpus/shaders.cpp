@@ -45,18 +45,18 @@ void addModuleSeeds(std::vector<Seed>& seeds, const fs::path& folder) {
 }
 
 // Stages with hit objects.
-void addReorderSeeds(std::vector<Seed>& seeds, const fs::path& folder, const shader::Compiler& compiler) {
-  for (const fs::path& file : filesIn(folder)) {
-    const auto stage = shader::stageOfFile(file);
+void addReorderSeeds(std::vector<Seed>& seeds, const fs::path& file, const shader::Compiler& compiler) {
+  for (const auto& [name, text] : test::readCase(file).files) {
+    const auto stage = shader::stageOfFile(name);
     if (!stage) continue;
     shader::Source source;
     source.stage = *stage;
-    source.name = file.filename().string();
-    source.text = "#version 460\n#extension GL_EXT_ray_tracing : require\n" + readTextFile(file);
+    source.name = name;
+    source.text = "#version 460\n#extension GL_EXT_ray_tracing : require\n" + text;
     const shader::Result result = compiler.compile(source);
-    if (!result.ok()) throw Error(file.string() + ": does not compile");
+    if (!result.ok()) throw Error(file.string() + ": " + name + " does not compile");
     const auto bytes = std::as_bytes(std::span(result.spirv));
-    seeds.push_back({file.filename().string() + ".spv", {bytes.begin(), bytes.end()}});
+    seeds.push_back({name + ".spv", {bytes.begin(), bytes.end()}});
   }
 }
 
@@ -84,8 +84,8 @@ void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
   if (seeds.empty()) throw Error("no SPIR-V module is small enough");
   corpora["modules"] = seeds;
   addModuleSeeds(corpora["modules"], root / "tests/check/modules");
-  for (const char* folder : {"recorded_hits", "reordered_paths"})
-    addReorderSeeds(corpora["modules"], root / "tests/check/engines" / folder, compiler);
+  for (const char* engine : {"recorded_hits.case", "reordered_paths.case"})
+    addReorderSeeds(corpora["modules"], root / "tests/check/engines" / engine, compiler);
 }
 
 }  // namespace quintet::fuzz
