@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Reads the corpus of mistakes and idioms (tests/check) for scripts: lists its programs, writes a program to a folder of
-# its own, and writes the scene that its facts.toml describes. Python 3.11, no other packages.
-import re
+# Reads the corpus of mistakes and idioms (tests/check) for scripts: expands its cases, lists its programs, writes a program to
+# a folder of its own, and writes the scene that its facts.toml describes. Python 3.11, no other packages.
 import shutil
+import subprocess
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ LECTURE = "program.rt.glsl"
 
 @dataclass(frozen=True)
 class Entry:
-    """One program of the corpus. `repaired` selects the repaired version of a mistake."""
+    """One program of the expanded corpus. `repaired` selects the repaired version of a mistake."""
 
     folder: Path
     repaired: bool = False
@@ -43,25 +43,18 @@ class Entry:
         return program, scene
 
 
-def mistakes(repaired=False):
-    return [Entry(folder, repaired) for folder in sorted((ROOT / "mistakes").iterdir()) if folder.is_dir()]
+def expand(tool, target):
+    """Writes all cases to the folders mistakes/NAME and idioms/NAME of `target`. `tool` is quintet_expand_cases."""
+    for kind in ("mistakes", "idioms"):
+        subprocess.run([tool, target / kind, *sorted((ROOT / kind).glob("*.case"))], check=True)
 
 
-def idioms():
-    return [Entry(folder) for folder in sorted((ROOT / "idioms").iterdir()) if folder.is_dir()]
+def mistakes(expanded, repaired=False):
+    return [Entry(folder, repaired) for folder in sorted((expanded / "mistakes").iterdir())]
 
 
-def marks(entry):
-    """Returns (id, file, line) of each EXPECT mark of a mistake."""
-    found = []
-    for file in sorted(entry.folder.iterdir()):
-        if not file.is_file():
-            continue
-        for number, line in enumerate(file.read_text().split("\n"), 1):
-            mark = re.search(r"EXPECT(\+1)? (Q[0-9]{3})", line)
-            if mark:
-                found.append((mark[2], file.name, number + (1 if mark[1] else 0)))
-    return found
+def idioms(expanded):
+    return [Entry(folder) for folder in sorted((expanded / "idioms").iterdir())]
 
 
 # One table of a scene file for each kind of geometry. The shapes are small, and all are seen by the default camera.

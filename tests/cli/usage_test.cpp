@@ -2,6 +2,7 @@
 // Wrong command lines: status 2 and one line that names the option, the value and the nearest name.
 #include <gmock/gmock.h>
 
+#include "check/case_file.h"
 #include "fixtures.h"
 
 namespace quintet::test {
@@ -189,8 +190,9 @@ TEST_F(Usage, ProgramHelpNamesTheOptionsOfTheCommand) {
       names.push_back(text.substr(at, text.find_first_of(" ,;.'", at) - at));
     return names;
   };
-  for (const std::string program :
-       {"pathtracer", QUINTET_SOURCE_ROOT "/tests/check/idioms/program_averages_its_frames"}) {
+  const std::filesystem::path idiom = folder_ / "idiom";
+  writeCase(readCase(QUINTET_SOURCE_ROOT "/tests/check/idioms/program_averages_its_frames.case"), idiom);
+  for (const std::string& program : {std::string("pathtracer"), idiom.string()}) {
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"render", "--program", program, "--help-program"}, {"run", program, "--help"}}) {
       const std::string help = quintet({command[0], "--help"}).out;

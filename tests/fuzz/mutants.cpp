@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 
+#include "check/case_file.h"
+
 namespace quintet::fuzz {
 namespace {
 
@@ -468,22 +470,27 @@ std::string mutateDescription(std::string& text, const Files& files, Random& ran
 
 std::vector<Source> findSources(const fs::path& root) {
   std::vector<Source> sources;
-  const auto add = [&](const fs::path& folder, const Files& base) {
-    Files files = base;
-    for (auto& [name, text] : filesOf(folder)) files[name] = text;
+  const auto add = [&](const fs::path& folder, const Files& files) {
     if (files.contains("program.toml")) {
-      sources.push_back({fs::relative(folder, root), "", files});
+      sources.push_back({folder, "", files});
       return;
     }
     for (const auto& [name, text] : files)
-      if (name.ends_with(kLecture)) sources.push_back({fs::relative(folder / name, root), name, files});
+      if (name.ends_with(kLecture)) sources.push_back({folder / name, name, files});
   };
-  for (const char* top : {"programs", "examples/programs", "tests/check/mistakes", "tests/check/idioms"}) {
+  for (const char* top : {"programs", "examples/programs"}) {
     if (!fs::exists(root / top)) continue;
-    add(root / top, {});
+    add(top, filesOf(root / top));
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
-      if (entry.is_directory())
-        add(entry.path(), entry.path().filename() == "repaired" ? filesOf(entry.path().parent_path()) : Files());
+      if (entry.is_directory()) add(fs::relative(entry.path(), root), filesOf(entry.path()));
+  }
+  for (const char* top : {"tests/check/mistakes", "tests/check/idioms"}) {
+    if (!fs::exists(root / top)) continue;
+    for (const fs::path& file : test::casesIn(root / top)) {
+      const test::Case program = test::readCase(file);
+      add(fs::path(top) / program.name, program.files);
+      if (!program.fixed.empty()) add(fs::path(top) / program.name / "repaired", program.allFixed());
+    }
   }
   std::ranges::sort(sources, {}, &Source::name);
   return sources;

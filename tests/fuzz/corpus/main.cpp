@@ -19,6 +19,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "check/case_file.h"
 #include "seeds.h"
 
 namespace quintet::fuzz {
@@ -42,12 +43,24 @@ void addTexts(std::vector<Seed>& seeds, const fs::path& folder, std::string_view
   }
 }
 
+// Adds a small file of each case in `folder` that has it.
+void addCases(std::vector<Seed>& seeds, const fs::path& folder, const std::string& name) {
+  for (const fs::path& file : test::casesIn(folder)) {
+    if (seeds.size() >= kMaxTexts) break;
+    const test::CaseFiles files = test::readCase(file).files;
+    const auto found = files.find(name);
+    if (found == files.end() || found->second.size() > kMaxText) continue;
+    const auto bytes = std::as_bytes(std::span(found->second));
+    seeds.push_back({fmt::format("{:03}_{}", seeds.size(), name), {bytes.begin(), bytes.end()}});
+  }
+}
+
 void addTextSeeds(Corpora& corpora, const fs::path& root) {
   for (const char* folder : {"examples", "programs"}) addTexts(corpora["scene"], root / folder, ".scene.toml");
-  for (const char* folder : {"programs", "tests/check/idioms"}) {
-    addTexts(corpora["lecture"], root / folder, ".rt.glsl");
-    addTexts(corpora["program"], root / folder, "program.toml");
-  }
+  addTexts(corpora["lecture"], root / "programs", ".rt.glsl");
+  addTexts(corpora["program"], root / "programs", "program.toml");
+  addCases(corpora["lecture"], root / "tests/check/idioms", "program.rt.glsl");
+  addCases(corpora["program"], root / "tests/check/idioms", "program.toml");
   // What no example has: files, textures, an environment and keyframes.
   constexpr std::string_view kMore = R"([[file]]
 name = "part"

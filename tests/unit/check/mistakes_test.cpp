@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The corpus of mistakes (tests/check/mistakes): each program has exactly one mistake, which is reported in the marked
 // line, and its repaired version has none. The corpus of idioms (tests/check/idioms): unusual but correct programs, for
-// which nothing is reported. The device of these tests has all defects of docs/design/quirks.md.
+// which nothing is reported. The device of these tests has all defects of docs/design/quirks.md. tests/check/README.md describes
+// the format of the cases.
 //
 // tests/check/known_misses.txt and known_false_alarms.txt list the programs for which the check is wrong today. The
 // tests fail if a listed program is reported correctly, so the lists stay true. tests/check/messages.txt has the messages, so that
@@ -17,6 +18,7 @@
 
 #include "base/file.h"
 #include "base/toml_reader.h"
+#include "case_file.h"
 #include "check/catalog.h"
 #include "check_test_support.h"
 #include "program/gsn/lecture.h"
@@ -30,13 +32,13 @@ const fs::path kCheck = fs::path(QUINTET_SOURCE_ROOT) / "tests/check";
 const fs::path kMistakes = kCheck / "mistakes";
 const fs::path kIdioms = kCheck / "idioms";
 
-std::vector<std::string> programsIn(const fs::path& folder) {
+std::vector<std::string> namesOfCases(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_directory()) names.push_back(entry.path().filename());
-  std::ranges::sort(names);
+  for (const fs::path& file : test::casesIn(folder)) names.push_back(file.stem());
   return names;
 }
+
+test::Case caseOf(const fs::path& folder, const std::string& name) { return test::readCase(folder / (name + ".case")); }
 
 // The names in a list: the first word of each line that is not empty and no comment.
 std::set<std::string> namesIn(const char* list) {
@@ -45,11 +47,6 @@ std::set<std::string> namesIn(const char* list) {
   for (std::string line, name; std::getline(lines, line);)
     if (std::istringstream(line) >> name && name.front() != '#') names.insert(name);
   return names;
-}
-
-void readFolder(const fs::path& folder, Files& files) {
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file()) files[entry.path().filename()] = readTextFile(entry.path());
 }
 
 // facts.toml: [[geometry]] kind, alpha, name, material; [[instance]] name, first, count, mask, force_opaque,
@@ -136,17 +133,25 @@ CheckResult checkProgram(const Files& files) {
 const CheckResult& checkMistake(const std::string& name) {
   static std::map<std::string, CheckResult> results;
   if (const auto known = results.find(name); known != results.end()) return known->second;
-  Files files;
-  readFolder(kMistakes / name, files);
-  return results.emplace(name, checkProgram(files)).first->second;
+  return results.emplace(name, checkProgram(caseOf(kMistakes, name).files)).first->second;
+}
+
+// "Q101 main.rgen:12 is in Q101_payload_type_differs.case:31" for each line.
+std::string locationsOf(const test::Case& program, const std::set<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) {
+    const std::size_t colon = line.rfind(':');
+    const std::string location = program.locationOf(line.substr(5, colon - 5), std::stoi(line.substr(colon + 1)));
+    if (!location.empty()) text += line + " is in " + location + '\n';
+  }
+  return text;
 }
 
 class Mistakes : public testing::TestWithParam<std::string> {};
 
 TEST_P(Mistakes, AreReportedInTheMarkedLines) {
-  Files files;
-  readFolder(kMistakes / GetParam(), files);
-  const std::set<std::string> expected = expectedOf(files);
+  const test::Case program = caseOf(kMistakes, GetParam());
+  const std::set<std::string> expected = expectedOf(program.files);
   ASSERT_FALSE(expected.empty()) << "no line has an EXPECT mark";
   for (const std::string& line : expected) EXPECT_EQ(line.substr(0, 4), GetParam().substr(0, 4));
   const CheckResult& result = checkMistake(GetParam());
@@ -161,7 +166,7 @@ TEST_P(Mistakes, AreReportedInTheMarkedLines) {
     EXPECT_NE(reported, expected) << "is reported now: remove it from known_misses.txt";
     return;
   }
-  EXPECT_EQ(reported, expected) << textOf(result);
+  EXPECT_EQ(reported, expected) << textOf(result) << locationsOf(program, expected) << locationsOf(program, reported);
 }
 
 void expectMessages(const std::string& program) {
@@ -191,23 +196,22 @@ INSTANTIATE_TEST_SUITE_P(Corpus, NumbersInMessages, testing::ValuesIn(programsWi
                          [](const auto& test) { return test.param; });
 
 TEST_P(Mistakes, AreNotReportedAfterRepair) {
-  Files files;
-  readFolder(kMistakes / GetParam(), files);
-  readFolder(kMistakes / GetParam() / "repaired", files);
+  const test::Case program = caseOf(kMistakes, GetParam());
+  EXPECT_FALSE(program.fixed.empty()) << "the case has no repaired version";
+  const Files files = program.allFixed();
   EXPECT_TRUE(expectedOf(files).empty()) << "the repaired version has an EXPECT mark";
   EXPECT_EQ(textOf(checkProgram(files)), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(programsIn(kMistakes)),
+INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(namesOfCases(kMistakes)),
                          [](const auto& test) { return test.param; });
 
 class Idioms : public testing::TestWithParam<std::string> {};
 
 TEST_P(Idioms, AreNotReported) {
-  Files files;
-  readFolder(kIdioms / GetParam(), files);
-  EXPECT_TRUE(expectedOf(files).empty()) << "an idiom has an EXPECT mark";
-  const std::string reported = textOf(checkProgram(files));
+  const test::Case program = caseOf(kIdioms, GetParam());
+  EXPECT_TRUE(program.fixed.empty()) << "an idiom has an EXPECT or FIX mark";
+  const std::string reported = textOf(checkProgram(program.files));
   if (namesIn("known_false_alarms.txt").contains(GetParam())) {
     EXPECT_NE(reported, "") << "is not reported now: remove it from known_false_alarms.txt";
     return;
@@ -215,12 +219,12 @@ TEST_P(Idioms, AreNotReported) {
   EXPECT_EQ(reported, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(programsIn(kIdioms)),
+INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(namesOfCases(kIdioms)),
                          [](const auto& test) { return test.param; });
 
 // Only a run can report Q001 to Q007 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
 TEST(MistakesCorpus, HasAnEntryForEachId) {
-  const std::vector<std::string> names = programsIn(kMistakes);
+  const std::vector<std::string> names = namesOfCases(kMistakes);
   for (const DiagnosticInfo& info : allDiagnostics()) {
     if (info.id < "Q010" || info.id == "Q016") continue;
     // Of pipelines that applications create: modules_test.cpp, tests/layer.
@@ -232,9 +236,8 @@ TEST(MistakesCorpus, HasAnEntryForEachId) {
 }
 
 TEST(MistakesCorpus, ListsOfKnownErrorsNameExistingPrograms) {
-  for (const std::string& name : namesIn("known_misses.txt")) EXPECT_TRUE(fs::is_directory(kMistakes / name)) << name;
-  for (const std::string& name : namesIn("known_false_alarms.txt"))
-    EXPECT_TRUE(fs::is_directory(kIdioms / name)) << name;
+  for (const auto& [list, folder] : {std::pair{"known_misses.txt", kMistakes}, {"known_false_alarms.txt", kIdioms}})
+    for (const std::string& name : namesIn(list)) EXPECT_TRUE(fs::exists(folder / (name + ".case"))) << name;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -18,6 +17,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "base/file.h"
+#include "check/case_file.h"
 #include "check/diagram/diagram.h"
 #include "check/diagram/svg.h"
 #include "check/modules_test_support.h"
@@ -239,13 +239,11 @@ TEST(ForeignModules, UnknownInstructionsOfReorderingAreANote) {
   for (const Diagnostic& d : notes) EXPECT_EQ(d.severity, Severity::note) << d.text;
 }
 
-// A folder of tests/check/engines: a pipeline of GLSL files, its groups, and mistakes that are edits of a file.
+// A case of tests/check/engines: a pipeline of GLSL files, its groups, and mistakes that are edits of a file.
 class EnginePipeline {
  public:
-  explicit EnginePipeline(const fs::path& folder) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      files_[entry.path().filename().string()] = readTextFile(entry.path());
-  }
+  explicit EnginePipeline(const std::string& name)
+      : files_(quintet::test::readCase(kEngines / (name + ".case")).files) {}
 
   struct Mistake {
     std::string found, file, from, to;
@@ -305,20 +303,17 @@ class EnginePipeline {
   std::map<std::string, std::string> files_;
 };
 
-class EngineShaders : public testing::TestWithParam<std::string> {
- protected:
-  const fs::path folder_ = kEngines / GetParam();
-};
+class EngineShaders : public testing::TestWithParam<std::string> {};
 
 TEST_P(EngineShaders, AreNotReported) {
-  for (const bool described : {true, false}) EXPECT_THAT(EnginePipeline(folder_).found(described), IsEmpty());
+  for (const bool described : {true, false}) EXPECT_THAT(EnginePipeline(GetParam()).found(described), IsEmpty());
 }
 
 TEST_P(EngineShaders, MistakesAreReportedOnce) {
-  const std::vector<EnginePipeline::Mistake> mistakes = EnginePipeline(folder_).mistakes();
+  const std::vector<EnginePipeline::Mistake> mistakes = EnginePipeline(GetParam()).mistakes();
   EXPECT_THAT(mistakes, testing::Not(IsEmpty()));
   for (const EnginePipeline::Mistake& mistake : mistakes) {
-    EnginePipeline pipeline(folder_);
+    EnginePipeline pipeline(GetParam());
     pipeline.make(mistake);
     EXPECT_THAT(pipeline.found(true), ElementsAre(mistake.found)) << mistake.file << ": " << mistake.to;
   }
@@ -326,7 +321,7 @@ TEST_P(EngineShaders, MistakesAreReportedOnce) {
 
 // The same pipeline with the cross-vendor extension, and its mistakes of payloads.
 TEST(ForeignModules, PathsAreReorderedWithTheExtExtension) {
-  const EnginePipeline correct(kEngines / "reordered_paths");
+  const EnginePipeline correct("reordered_paths");
   for (const bool described : {true, false}) EXPECT_THAT(correct.found(described, true), IsEmpty());
   for (const EnginePipeline::Mistake& mistake : correct.mistakes()) {
     if (!mistake.found.starts_with("Q101") && !mistake.found.starts_with("Q104")) continue;
@@ -336,15 +331,13 @@ TEST(ForeignModules, PathsAreReorderedWithTheExtExtension) {
   }
 }
 
-std::vector<std::string> engineFolders() {
+std::vector<std::string> engineNames() {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(kEngines))
-    names.push_back(entry.path().filename().string());
-  std::ranges::sort(names);
+  for (const fs::path& file : quintet::test::casesIn(kEngines)) names.push_back(file.stem());
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Folders, EngineShaders, testing::ValuesIn(engineFolders()),
+INSTANTIATE_TEST_SUITE_P(Folders, EngineShaders, testing::ValuesIn(engineNames()),
                          [](const auto& name) { return name.param; });
 
 // --graph: the stages, and what each trace can reach.
@@ -371,7 +364,7 @@ TEST(ForeignModules, AreDescribedOnRequest) {
 
 // A trace with a hit object and its execution are nodes of their own, with the shaders that each runs.
 TEST(ForeignModules, HitObjectsAreDrawn) {
-  const std::string svg = EnginePipeline(kEngines / "reordered_paths").svg();
+  const std::string svg = EnginePipeline("reordered_paths").svg();
   for (const char* text : {"trace paths.rgen", "execution paths.rgen", "not run by this trace"})
     EXPECT_THAT(svg, HasSubstr(text));
 }

@@ -1,3 +1,0 @@
-struct Payload {
-  int layers;
-};

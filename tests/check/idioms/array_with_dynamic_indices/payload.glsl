@@ -1,4 +1,0 @@
-struct Payload {
-  float weights[2];
-  vec3 color;
-};

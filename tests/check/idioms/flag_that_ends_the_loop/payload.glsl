@@ -1,5 +1,0 @@
-struct Payload {
-  vec3 color;
-  vec3 origin;
-  bool missed;
-};

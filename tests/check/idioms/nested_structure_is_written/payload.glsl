@@ -1,8 +1,0 @@
-struct Light {
-  vec3 color;
-  float power;
-};
-struct Payload {
-  Light light;
-  float t;  // negative if the ray hit nothing
-};

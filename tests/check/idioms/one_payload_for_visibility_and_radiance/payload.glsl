@@ -1,5 +1,0 @@
-struct Payload {
-  vec3 radiance;
-  float t;
-  bool visible;
-};

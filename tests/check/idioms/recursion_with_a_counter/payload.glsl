@@ -1,1 +1,0 @@
-struct Bounce { vec3 color; uint remaining; };

@@ -1,3 +1,0 @@
-struct Payload {
-  vec4 color;  // w is not used
-};

@@ -1,1 +1,0 @@
-struct Step { vec3 emission; vec3 position; bool done; };

@@ -1,3 +1,0 @@
-struct Payload {
-  vec4 color;  // w: distance, negative if the ray hit nothing
-};

@@ -1,4 +1,0 @@
-struct Hit {
-  bool found;
-  vec3 position, normal;
-};

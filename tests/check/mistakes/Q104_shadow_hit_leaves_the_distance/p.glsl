@@ -1,4 +1,0 @@
-struct Probe {
-  float dist;
-  bool occluded;
-};

@@ -1,8 +1,0 @@
-struct Path {
-  float weight;
-  int depth;
-};
-struct Payload {
-  vec3 color;
-  Path path;
-};

@@ -1,5 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-#include "payloads.glsl"
-layout(location = 0) rayPayloadInEXT Radiance radiance;
-void main() { radiance.color = vec3(0.7, 0.8, 1.0); }

@@ -1,8 +1,0 @@
-struct Radiance {
-  vec3 color;
-  uint seed;
-};
-struct Shadow {
-  float visibility;
-  uint seed;
-};

@@ -1,6 +1,0 @@
-struct Payload {
-  vec3 color;
-};
-struct Shadow {
-  float visible;
-};

@@ -1,5 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-#include "p.glsl"
-layout(location = 0) rayPayloadInEXT Payload p;
-void main() { p.color = vec3(0.2, 0.5, 0.3); }

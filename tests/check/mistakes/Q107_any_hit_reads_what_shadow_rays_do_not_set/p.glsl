@@ -1,1 +1,0 @@
-struct Payload { vec3 color; uint bits; };

@@ -1,8 +1,0 @@
-struct Info {
-  int depth;
-  float ior;
-};
-struct Payload {
-  vec3 color;
-  Info info;
-};

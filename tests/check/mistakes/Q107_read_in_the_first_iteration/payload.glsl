@@ -1,3 +1,0 @@
-struct Payload {
-  vec3 color;
-};

@@ -1,1 +1,0 @@
-struct Strand { float along; float across; };

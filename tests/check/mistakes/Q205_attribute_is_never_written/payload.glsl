@@ -1,7 +1,0 @@
-struct Payload {
-  vec3 color;
-};
-struct Ball {
-  vec3 normal;
-  float height;
-};

@@ -1,4 +1,0 @@
-struct TextureArgs {
-  vec2 uv;
-  vec3 color;
-};

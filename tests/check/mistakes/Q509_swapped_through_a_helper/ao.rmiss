@@ -1,5 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-#include "ray.glsl"
-layout(location = 0) rayPayloadInEXT Hit hit;
-void main() { hit.distance = -1.0; }

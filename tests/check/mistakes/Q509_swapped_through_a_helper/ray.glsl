@@ -1,3 +1,0 @@
-struct Hit {
-  float distance;
-};

@@ -1,4 +1,0 @@
-struct Sight {
-  vec3 point;
-  bool blocked;
-};

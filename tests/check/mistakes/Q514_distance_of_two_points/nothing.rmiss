@@ -1,8 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-#include "data.glsl"
-layout(location = 0) rayPayloadInEXT Sight sight;
-void main() {
-  sight.point = vec3(0.0);
-  sight.blocked = false;
-}

@@ -1,4 +1,0 @@
-struct Payload {
-  vec3 color;
-  float t;  // negative if the ray hit nothing
-};

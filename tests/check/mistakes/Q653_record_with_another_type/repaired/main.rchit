@@ -1,8 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-#include <quintet/frame.glsl>
-#include <quintet/generated/record.glsl>
-layout(location = 0) rayPayloadInEXT vec3 c;
-void main() {
-  c = record.albedo * (1.0 - record.roughness);
-}

@@ -1,1 +1,0 @@
-struct GBuffer { vec3 position; vec3 normal; bool valid; };

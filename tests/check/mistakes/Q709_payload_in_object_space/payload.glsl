@@ -1,5 +1,0 @@
-struct Payload {
-  vec3 color;
-  vec3 normal;  // world space, unit
-  float t;      // negative if the ray hit nothing
-};

@@ -1,4 +1,0 @@
-#version 460
-#extension GL_EXT_ray_tracing : require
-layout(location = 0) rayPayloadInEXT vec3 Li;
-void main() { Li = vec3(0.8, 0.7, 0.6) / (1.0 + gl_HitTEXT); }
