@@ -121,8 +121,10 @@ ProjectFolder::Listing ProjectFolder::list() const {
     const fs::path relative = at->path().lexically_relative(root_);
     const std::string name = relative.generic_string();
     const bool isFolder = at->is_directory(ignored);
-    if (!isFileName(name) || at.depth() >= kMaxDepth) {
+    const bool tooDeep = at.depth() >= kMaxDepth;
+    if (!isFileName(name) || tooDeep) {
       if (isFolder) at.disable_recursion_pending();
+      listing.truncated = listing.truncated || (isFileName(name) && tooDeep);
       continue;
     }
     if (isFolder || !at->is_regular_file(ignored) || !belongs(name)) continue;

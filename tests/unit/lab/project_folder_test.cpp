@@ -163,10 +163,13 @@ TEST_F(ProjectFolderTest, ListsFilesInOrderWithoutHiddenOnes) {
 
 // The listing has the files of the project folder and of seven levels of folders below it.
 TEST_F(ProjectFolderTest, ListsFilesInEightLevelsOfFolders) {
-  fs::create_directories(path("1/2/3/4/5/6/7/8"));
+  fs::create_directories(path("1/2/3/4/5/6/7"));
   writeFile(path("1/2/3/4/5/6/7/listed.glsl"), "x");
+  EXPECT_FALSE(project_->list().truncated);
+  fs::create_directories(path("1/2/3/4/5/6/7/8"));
   writeFile(path("1/2/3/4/5/6/7/8/deep.glsl"), "x");
   const ProjectFolder::Listing listing = project_->list();
+  EXPECT_TRUE(listing.truncated);
   ASSERT_EQ(listing.files.size(), 2u);
   EXPECT_EQ(listing.files[0].name, "1/2/3/4/5/6/7/listed.glsl");
   EXPECT_EQ(listing.files[1].name, "a.glsl");
