@@ -71,6 +71,25 @@ TEST(InstrumentedRun, NamesTheLineThatMadeAValueNotFinite) {
   EXPECT_NE(found[0].text.find("4 such pixels"), std::string::npos) << found[0].text;
 }
 
+// Operations that pass a NaN on are not its origin, whichever of their operands it is. The library makes this one: ∞ / ∞.
+TEST(InstrumentedRun, DoesNotNameOperationsThatPassAValueOn) {
+  static Engine engine({});
+  const program::Program program = program::parseLecture(
+      "#include <quintet/scattering.glsl>\n"
+      "void main() { /**** RAY GENERATION SHADER ****/\n"
+      "  float value = phaseFunction(0.5, 1e30 + float(gl_LaunchIDEXT.x));\n"
+      "  gsnSetPixel(vec4(0.5 * value, value * 0.5, 1.0 - value, value / 3.0)); }\n",
+      "demo.rt.glsl", "here");
+  RenderRequest request;
+  request.size = {8, 4};
+  const std::vector<Diagnostic> found =
+      runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].id, "Q002");
+  EXPECT_NE(found[0].file.find("quintet/scattering.glsl"), std::string::npos)
+      << found[0].file << ":" << found[0].line << ": " << found[0].text;
+}
+
 TEST(InstrumentedRun, RendersTheRequestedFramesAndParameters) {
   RenderRequest request;
   request.size = {256, 8};

@@ -81,5 +81,55 @@ TEST(DiffuseTransmission, EntersAVolumeThatAbsorbs) {
   }
 }
 
+// A sheet has no inside: a volume around it absorbs light on both sides. The camera is in the volume, too, 1 m from the sheet.
+TEST(DiffuseTransmission, ASheetInAVolumeDoesNotEndIt) {
+  constexpr float kSize = 0.4f, kRadiance = 5.0f;
+  const vec3 corner(0.1f, -0.5f, 0.3f), color(0.5f, 0.9f, 1.0f);
+  scene::Material sheet = lambert(vec3(0.0f)), water = clearGlass(1.0f, 1.0f);
+  sheet.diffuseTransmission = 1.0f;
+  water.attenuationColor = color;
+  water.attenuationDistance = 0.3f;
+  vec4 expected(0.0f, 0.0f, 0.0f, 1.0f);
+  for (glm::length_t i = 0; i < 3; ++i) {
+    const double absorption = -std::log(static_cast<double>(color[i])) / 0.3;
+    expected[i] = transmittedFrom(corner, kSize, kRadiance, absorption) * static_cast<float>(std::exp(-absorption));
+  }
+  for (const float priority : {0.0f, 1.0f}) {  // without and with nested media
+    for (const float side : {-2.0f, 2.0f}) {   // the sheet is seen from the front, and from behind
+      SCOPED_TRACE(testing::Message() << "priority " << priority << ", side " << side);
+      water.dielectricPriority = priority;
+      SceneBuilder scene;
+      scene.add(box(vec3(-9.0f), vec3(9.0f)), water)
+          .add(quad({-1, 0, -0.5f * side}, {2, 0, 0}, {0, 0, side}), sheet)
+          .add(quad(corner, {kSize, 0, 0}, {0, 0, -kSize}), emitter(vec3(kRadiance)));
+      scene.camera(orthographic({0, 0.5f, std::sqrt(0.75f)}, vec3(0.0f), 1e-4f));
+      expectUniform(renderImage(scene), expected, {.error = 0.01, .rounding = 1e-3});
+    }
+  }
+}
+
+// A red square above a leaf and a green one below it fill about half of the directions on their side, those near the normal. A path
+// chooses a side; its direction does not depend on this choice.
+TEST(DiffuseTransmission, TheDirectionIsIndependentOfTheSide) {
+  constexpr float kReflected = 0.8f, kTransmitted = 0.4f;
+  scene::Material leaf = lambert(vec3(kReflected));
+  leaf.diffuseTransmission = 0.5f;
+  leaf.diffuseTransmissionColor = vec3(kTransmitted);
+  SceneBuilder scene;
+  scene.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), leaf);
+  for (const float y : {-1.0f, 1.0f})
+    scene.add(quad({-1, y, 1}, {2, 0, 0}, {0, 0, -2}), emitter(y > 0.0f ? vec3(1, 0, 0) : vec3(0, 1, 0)));
+  scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 1e-4f));
+  const float fromSquare = 0.5f * transmittedFrom({-1, -1, 1}, 2.0f, 1.0f, 0.0);
+  for (const char* program : {"pathtracer", "naive"}) {
+    SCOPED_TRACE(program);
+    ImageOptions options;
+    options.program = program::loadProgram(program);
+    options.batches = 32;
+    expectUniform(renderImage(scene, options), {kReflected * fromSquare, kTransmitted * fromSquare, 0.0f, 1.0f},
+                  {.error = 0.03, .rounding = 1e-3});
+  }
+}
+
 }  // namespace
 }  // namespace quintet::test

@@ -171,19 +171,21 @@ TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
   struct Query {
     std::uint32_t outside;  // 1: with dispersion, 2: without
     float transmission, dispersion;
+    std::uint32_t thin = 0;
   };
   struct Answer {
     float ior, dispersion;
     vec3 transmitted;
   };
-  const std::vector<Query> queries{{1, 1, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0.5f}, {0, 1, 0}};
+  const std::vector<Query> queries{{1, 1, 0}, {1, 0, 0},    {2, 1, 0},    {1, 1, 0.5f},
+                                   {0, 1, 0}, {1, 1, 0, 1}, {1, 0, 0, 1}, {2, 0, 0, 1}};  // only panes keep their index
   const auto answers = runCompute<Answer>(prelude + R"(
-    struct Query { uint outside; float transmission; float dispersion; };
+    struct Query { uint outside; float transmission; float dispersion; uint thin; };
     struct Answer { float ior; float dispersion; vec3 transmitted; };
     #define In Query
     #define Out Answer
     Out run(uint index, In q) {
-      BsdfParameters p = BsdfParameters(vec3(0.8), 0.0, 0.1, q.transmission, 1.8, true, false, 1.0, vec3(1.0), 0.0, 0.01,
+      BsdfParameters p = BsdfParameters(vec3(0.8), 0.0, 0.1, q.transmission, 1.8, true, q.thin != 0u, 1.0, vec3(1.0), 0.0, 0.01,
                                         vec3(0.0, 0.0, 1.0), vec3(0.0), 0.25, 0.0, vec3(0.5), 0.0, 0.0, 1.3, 400.0,
                                         q.dispersion, vec3(1.0));
       setOutside(p, q.outside, 2u);
@@ -192,8 +194,9 @@ TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
   )",
                                           queries, queries.size(), device.options());
   const float ofDispersive = 1.5f + 0.025f * 0.5f;  // of channel 2
-  const float iors[] = {1.8f / ofDispersive, 1.8f / ofDispersive, 1.8f / 1.25f, 1.8f / ofDispersive, 1.8f};
-  const float dispersions[] = {1, 0, 0, 0.5f, 0};
+  const float iors[] = {1.8f / ofDispersive, 1.8f / ofDispersive, 1.8f / 1.25f, 1.8f / ofDispersive, 1.8f, 1.8f,
+                        1.8f / ofDispersive, 1.8f / 1.25f};
+  const float dispersions[] = {1, 0, 0, 0.5f, 0, 0, 0, 0};
   for (std::size_t i = 0; i < queries.size(); ++i) {
     EXPECT_NEAR(answers[i].ior, iors[i], 1e-6f) << i;
     EXPECT_EQ(answers[i].dispersion, dispersions[i]) << i;

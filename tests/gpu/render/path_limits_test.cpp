@@ -69,7 +69,7 @@ TEST(PathLimits, MediaHave64EventsPerBounce) {
   milk.multiscatterColor = vec3(1.0f);
   SceneBuilder scene;
   scene.add(box(vec3(-50.0f), vec3(50.0f)), milk).camera(orthographic(vec3(0.0f), {0, 0, -1}, 0.01f));
-  for (const int bounces : {1, 2}) {
+  for (const int bounces : {0, 1, 2}) {
     const std::string set = "bounces=" + std::to_string(bounces);
     EXPECT_EQ(raysPerSample(scene, limitedOptions("pathtracer", {set, "roulette_start=1000"}, 1)),
               64.0 * bounces + 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q201 to Q203, Q401, Q402, Q501 to Q506, Q509, Q601 to Q605, Q801, Q802; results of the check.
+// Q201 to Q203, Q401, Q402, Q501 to Q506, Q509, Q601 to Q605, Q608, Q801, Q802; results of the check.
 #include "check_test_support.h"
 
 namespace quintet::check {
@@ -257,6 +257,23 @@ TEST(CheckArguments, Q605ReportsFlagsThatExcludeEachOther) {
       traceWith("gl_RayFlagsNoneEXT", "gl_RayFlagsCullBackFacingTrianglesEXT | gl_RayFlagsCullFrontFacingTrianglesEXT"),
       HasSubstr("Q605"));
   EXPECT_EQ(traceWith("gl_RayFlagsNoneEXT", "gl_RayFlagsNoOpaqueEXT | gl_RayFlagsCullBackFacingTrianglesEXT"), "");
+}
+
+TEST(CheckGeometry, Q608StatesTheLargestOfTheHitKinds) {
+  const auto withKind = [](const std::string& kind) {
+    return checkEdited(boxFiles(), "box.rint", "EXT(1.0, 0u)", "EXT(1.0, " + kind + ")");
+  };
+  const auto message = [](const std::string& kind) {
+    return "Q608 box.rint:10:3 the hit kind of this report is " + kind +
+           ", but the maximum is 127; Vulkan reserves larger ones for triangles\n";
+  };
+  const std::string up = "gl_ObjectRayDirectionEXT.x > 0.0 ? ";
+  EXPECT_EQ(withKind("127u"), "");
+  EXPECT_EQ(withKind("128u"), message("128"));
+  EXPECT_EQ(withKind(up + "5u : 127u"), "");
+  EXPECT_EQ(withKind("uint[3](5u, 150u, 200u)[gl_LaunchIDEXT.x % 3u]"), message("up to 200"));
+  EXPECT_EQ(withKind(up + "150u : 200u"), message("at least 150"));
+  EXPECT_EQ(withKind(up + "127u : 128u"), message("up to 128"));
 }
 
 TEST(CheckUnused, Q801ReportsUnreachableStages) {

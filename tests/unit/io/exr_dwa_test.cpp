@@ -110,15 +110,18 @@ TEST(ExrDwaTest, DecodesTheFileOnlyForLargeValues) {
   EXPECT_TRUE(DwaLimits(image, channels, 0).canOverflow(45.0f));
 }
 
-// The file is encoded without loss. The pixel `broken` is infinite in it, so the limit is half of the largest value of its block.
+// The file is encoded without loss. The pixel `broken` is infinite in it, so the limit is half of the largest finite magnitude that
+// any channel of its layer has in its block: that of G, which is negative, 1.5 times that of R.
 // Blocks begin at the borders of tiles, so those at the right and lower borders can be smaller than 8 x 8 pixels.
 TEST(ExrDwaTest, LimitsOnlyTheBlockWithAnInfiniteValue) {
   constexpr std::size_t kSide = 30, kPixels = kSide * kSide;
   ExrImage image{kSide, kSide, {}};
   for (const char* name : {"R", "G", "lights.R"}) {
     ExrChannel& channel = image.channels.emplace_back(ExrChannel{name, ExrType::f32, std::vector<float>(kPixels)});
-    for (std::size_t i = 0; i < kPixels; ++i) channel.samples[i] = 20000.0f + 40.0f * static_cast<float>(i);
+    const float factor = channel.name == "R" ? 1.0f : channel.name == "G" ? -1.5f : 2.0f;
+    for (std::size_t i = 0; i < kPixels; ++i) channel.samples[i] = factor * (10000.0f + 20.0f * static_cast<float>(i));
   }
+  image.channels[1].samples[0] = -std::numeric_limits<float>::infinity();
   const std::vector<const ExrChannel*> channels{&image.channels[0], &image.channels[1], &image.channels[2]};
   for (const std::uint32_t tile : {0u, 8u, 12u, 13u})
     for (std::size_t broken = 0; broken < kPixels; broken += 7) {
@@ -129,22 +132,48 @@ TEST(ExrDwaTest, LimitsOnlyTheBlockWithAnInfiniteValue) {
       const auto inBlock = [&](std::size_t a, std::size_t b) {
         return tile == 0 ? a / 8 == b / 8 : a / tile == b / tile && a % tile / 8 == b % tile / 8;
       };
-      const std::vector<float>& values = image.channels[0].samples;
-      std::vector<float> expected = values;
       std::vector<std::size_t> block;
       for (std::size_t i = 0; i < kPixels; ++i)
         if (inBlock(i % kSide, broken % kSide) && inBlock(i / kSide, broken / kSide)) block.push_back(i);
-      for (const std::size_t i : block) expected[i] = std::min(values[i], 0.5f * values[block.back()]);
+      const float limit = 0.5f * 1.5f * image.channels[0].samples[block.back()];
       for (const ExrChannel& channel : image.channels) {
-        std::vector<float> clamped = values;
+        std::vector<float> clamped = channel.samples, expected = channel.samples;
+        for (const std::size_t i : block)
+          if (channel.name != "lights.R" && std::isfinite(expected[i]))
+            expected[i] = std::clamp(expected[i], -limit, limit);
         const std::span<float> upper = std::span(clamped).first(10 * kSide),
                                rest = std::span(clamped).subspan(10 * kSide);
         limits.clamp(channel, 0, upper);
         limits.clamp(channel, upper.size(), rest);
-        EXPECT_EQ(clamped, channel.name == "lights.R" ? values : expected)
-            << channel.name << ", tiles " << tile << ", pixel " << broken % kSide << ' ' << broken / kSide;
+        EXPECT_EQ(clamped, expected) << channel.name << ", tiles " << tile << ", pixel " << broken % kSide << ' '
+                                     << broken / kSide;
       }
     }
+}
+
+TEST(ExrDwaTest, HalvesTheLimitUntilAllValuesAreFinite) {
+  const ExrImage image{8, 8, {{"R", ExrType::f32, std::vector<float>(64, -65504.0f)}}};
+  const std::vector<const ExrChannel*> channels{&image.channels[0]};
+  DwaLimits limits(image, channels, 0);
+  ExrImage encoded = image;
+  const auto tightened = [&](float value) {
+    encoded.channels[0].samples[63] = value;
+    return limits.tighten(encodeExr(encoded, {ExrCompression::none}), 0);
+  };
+  const auto clamped = [&] {
+    std::vector<float> values = image.channels[0].samples;
+    limits.clamp(image.channels[0], 0, values);
+    EXPECT_EQ(std::ranges::count(values, values[0]), 64);
+    return values[0];
+  };
+  // 15 steps below the largest half: decoders that round differently do not read it as infinity.
+  std::ranges::fill(encoded.channels[0].samples, -65024.0f);
+  EXPECT_FALSE(tightened(65024.0f));
+  EXPECT_EQ(clamped(), -kMaxDwaValue);
+  EXPECT_TRUE(tightened(65056.0f));  // the next half
+  EXPECT_EQ(clamped(), -0.5f * kMaxDwaValue);
+  EXPECT_TRUE(tightened(-std::numeric_limits<float>::infinity()));
+  EXPECT_EQ(clamped(), -0.25f * kMaxDwaValue);
 }
 
 }  // namespace

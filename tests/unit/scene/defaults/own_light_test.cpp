@@ -48,10 +48,16 @@ class OwnLightOf : public testing::Test {
           addQuad(corner, v, u, material);
       }
   }
-  // 64 m², at the height 0.
-  void addFloor() {
+  // At the height 0, 64 m² by default.
+  void addFloor(float size = 8.0f) {
     wall().metallic = 0.0f;
-    addQuad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, 0);
+    addQuad({-size / 2, 0, -size / 2}, {0, 0, size}, {size, 0, 0}, 0);
+  }
+  // A quad of 1 m x `width` that faces up and has the material `lit`, beside one of the rest of 1 m² that faces down.
+  void addTwoSides(float width, int lit) {
+    wall().metallic = 0.0f;
+    addQuad({0, 0, 0}, {0, 0, 1}, {width, 0, 0}, lit);
+    addQuad({2, 0, 0}, {1 - width, 0, 0}, {0, 0, 1}, 0);
   }
   void addLight(const vec3& position, float intensity) {
     scene::Light& light = scene_.lights.emplace_back();
@@ -143,8 +149,46 @@ TEST_F(OwnLightOf, TransformsCount) {
 TEST_F(OwnLightOf, EmissionWithATextureDoesNotCount) {
   addCube(true, 0);
   addLamp(0.9f, 0.5f);
+  lamp().emissive = vec3(20.0f);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission);
   lamp().emissiveTexture.texture = 0;
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+  lamp().emissiveTexture = {};
+  lamp().unlit = true;  // shows its base color only
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::faint);
+}
+
+TEST_F(OwnLightOf, SurfacesCountFromARadianceOfATwentieth) {
+  addFloor();
+  addSun({0, -1, 0}, 0.0499f * glm::pi<float>());
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  scene_.lights[0].intensity = vec3(0.0501f * glm::pi<float>());
+  EXPECT_EQ(scene::litShare(scene_), 1.0);
+  scene_.lights.clear();
+  wall().emissive = vec3(0.0499f);
+  EXPECT_EQ(scene::litShare(scene_), 0.0);
+  wall().emissive = vec3(0.0501f);
+  EXPECT_EQ(scene::litShare(scene_), 1.0);
+}
+
+// The points of the estimate are equidistant in the area, so the share is exact to 1/256.
+TEST_F(OwnLightOf, EmissionMustLightHalfOfTheScene) {
+  for (const float lit : {0.49f, 0.5f, 0.51f}) {
+    scene_.meshes.clear(), scene_.instances.clear();
+    addTwoSides(lit, 1);
+    EXPECT_NEAR(scene::litShare(scene_), lit, 1.0 / 256.0);
+    EXPECT_EQ(scene::ownLight(scene_), lit < 0.5f ? OwnLight::faint : OwnLight::emission) << lit;
+  }
+}
+
+TEST_F(OwnLightOf, PunctualLightsMustLightAFifthOfTheScene) {
+  addSun({0, -1, 0}, 1.0f);
+  for (const float lit : {0.19f, 0.21f}) {
+    scene_.meshes.clear(), scene_.instances.clear();
+    addTwoSides(lit, 0);
+    EXPECT_NEAR(scene::litShare(scene_), lit, 1.0 / 256.0);
+    EXPECT_EQ(scene::ownLight(scene_), lit < 0.2f ? OwnLight::faint : OwnLight::punctual) << lit;
+  }
 }
 
 TEST_F(OwnLightOf, PunctualLightCountsIfItShines) {
@@ -193,6 +237,60 @@ TEST_F(OwnLightOf, ShareOfAPointLightIsThatOfTheClosedForm) {
   EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() / 64.0, 0.01) << "a light behind the floor";
 }
 
+// A lamp at the height 1 whose intensity falls from the axis of the cone to 60°, by the square of 2 · cos - 1. At a cosine of 3/4,
+// this is 1/4, and the irradiance I/4 · cos³.
+TEST_F(OwnLightOf, SpotLightsFadeTowardTheEdgeOfTheirCone) {
+  addFloor(2.5f);
+  addLight({0, 1, 0}, static_cast<float>(0.05 * glm::pi<double>() * 4.0 / std::pow(0.75, 3.0)));
+  scene_.lights[0].type = scene::LightType::spot;
+  scene_.lights[0].direction = {0, -1, 0};
+  scene_.lights[0].innerConeAngle = 0.0f;
+  scene_.lights[0].outerConeAngle = glm::radians(60.0f);
+  const double square = 1.0 / (0.75 * 0.75) - 1.0;  // of the radius of the lit disk
+  EXPECT_NEAR(scene::litShare(scene_), glm::pi<double>() * square / 6.25, 0.03);
+}
+
+TEST_F(OwnLightOf, TheStrongestOfManyPunctualLightsCount) {
+  addFloor();
+  for (int i = 0; i < 40; ++i) addSun({0, -1, 0}, i == 20 ? 1.0f : 1e-4f);
+  EXPECT_EQ(scene::litShare(scene_), 1.0);
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::punctual);
+  const auto shareBy = [&](double count) {  // if a radiance of 0.05 needs this number of the 40 equal lights
+    for (scene::Light& light : scene_.lights)
+      light.intensity = vec3(static_cast<float>(0.05 * glm::pi<double>() / count));
+    return scene::litShare(scene_);
+  };
+  EXPECT_EQ(shareBy(15.5), 1.0) << "16 lights are more";
+  EXPECT_EQ(shareBy(16.5), 0.0) << "16 lights are less";
+}
+
+// 25 lamps, each of which lights a disk with a radius of 0.5. Everywhere else, they are behind the edge of their cone.
+TEST_F(OwnLightOf, TheStrongestPunctualLightsAreThoseOfEachPoint) {
+  addFloor();
+  for (int i = 0; i < 25; ++i) {
+    const int column = i % 5 - 2, row = i / 5 - 2;
+    addLight({1.6f * static_cast<float>(column), 0.5f, 1.6f * static_cast<float>(row)}, 100.0f + static_cast<float>(i));
+    scene_.lights.back().type = scene::LightType::spot;
+    scene_.lights.back().direction = {0, -1, 0};
+    scene_.lights.back().outerConeAngle = scene_.lights.back().innerConeAngle = glm::radians(45.0f);
+  }
+  EXPECT_NEAR(scene::litShare(scene_), 25.0 * glm::pi<double>() * 0.25 / 64.0, 0.04);  // with 16 of them, 0.11 less
+}
+
+// Whether a double-sided surface shows its front or its back is random.
+TEST_F(OwnLightOf, DoubleSidedSurfacesCountOnARandomSide) {
+  addFloor();
+  addSun({0, -1, 0}, 1.0f);
+  wall().doubleSided = true;
+  EXPECT_EQ(scene::litShare(scene_), 0.5);
+  scene_.lights[0].direction = {0, 1, 0};
+  EXPECT_EQ(scene::litShare(scene_), 0.5);
+  scene_.lights.clear();
+  addLamp(1.0f, 1.0f);
+  lamp().emissive = vec3(1000.0f);
+  EXPECT_NEAR(scene::litShare(scene_), (0.5 * 64.0 + 1.0) / 65.0, 0.01);
+}
+
 // A mirror shows nothing of a point; the rougher it is, the more.
 TEST_F(OwnLightOf, MetalsAndGlassNeedMoreThanAPunctualLight) {
   addFloor();
@@ -211,6 +309,8 @@ TEST_F(OwnLightOf, MetalsAndGlassNeedMoreThanAPunctualLight) {
   wall().metallic = 0.0f;
   wall().transmission = 1.0f;
   EXPECT_EQ(light(), OwnLight::faint);
+  wall().transmissionTexture.texture = 0;
+  EXPECT_EQ(light(), OwnLight::punctual) << "unknown, so that it is not taken for glass";
 }
 
 TEST_F(OwnLightOf, ShadowsOfPunctualLightsCount) {
@@ -260,6 +360,11 @@ TEST_F(OwnLightOf, EmissiveSolidCounts) {
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission);
   scene_.instances[0].mask = 0;
   EXPECT_EQ(scene::ownLight(scene_), OwnLight::none) << "hidden";
+  scene_.instances[0].mask = 0xFF;
+  scene_.meshes[0].primitiveSets[0].primitives[0].material = 0;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::none);
+  scene_.meshes[0].primitiveSets[0].material = 1;
+  EXPECT_EQ(scene::ownLight(scene_), OwnLight::emission) << "the material of the set";
 }
 
 TEST_F(OwnLightOf, DegenerateSurfacesAreNotCounted) {
