@@ -82,7 +82,7 @@ std::string ProjectFolder::description() const {
 fs::path ProjectFolder::locate(const std::string& name) const {
   if (!isFileName(name)) throw NameError(fmt::format("'{}' is not a name of a file in the project", printable(name)));
   std::error_code error;
-  const fs::path path = root_ / name;
+  fs::path path = root_ / name;
   const fs::path resolved = fs::weakly_canonical(path, error);
   if (error) throw FileError(name, error.message());
   // What a link names that does not exist could be created there.

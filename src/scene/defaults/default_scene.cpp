@@ -48,8 +48,8 @@ void addQuad(Geometry& geometry, vec3 center, vec3 right, vec3 up) {
     geometry.normals.push_back(normal);
     geometry.uvs[0].push_back({0.5f + 0.5f * corner.x, 0.5f - 0.5f * corner.y});
   }
-  geometry.triangles.push_back({first, first + 1, first + 2});
-  geometry.triangles.push_back({first, first + 2, first + 3});
+  geometry.triangles.emplace_back(first, first + 1, first + 2);
+  geometry.triangles.emplace_back(first, first + 2, first + 3);
 }
 
 Geometry floor() {
