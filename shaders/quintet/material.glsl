@@ -6,7 +6,6 @@
 #include "bsdf/bsdf.glsl"
 #include "bsdf/dispersion.glsl"
 #include "features.glsl"
-#include "scattering.glsl"
 #include "shared/radiance.h"
 #include "surface.glsl"
 

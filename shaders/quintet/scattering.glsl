@@ -35,7 +35,7 @@ MediumStep sampleMediumStep(vec3 attenuation, vec3 albedo, vec3 throughput, floa
     s.distance = t;
     s.weight = albedo * density / max(dot(probability, density), 1e-37);
   } else {
-    // Not exp(-0 · kInfinity): an exponential to the base 2 overflows before the product, and is NaN.
+    // exp(-0 · kInfinity) is NaN on NVIDIA GPUs.
     const vec3 transmittance = end < kInfinity ? exp(-attenuation * end) : endlessTransmittance(attenuation);
     s.distance = -1.0;
     s.weight = transmittance / max(dot(probability, transmittance), 1e-37);

@@ -121,10 +121,9 @@ ProjectFolder::Listing ProjectFolder::list() const {
     const fs::path relative = at->path().lexically_relative(root_);
     const std::string name = relative.generic_string();
     const bool isFolder = at->is_directory(ignored);
-    const bool tooDeep = at.depth() >= kMaxDepth;
-    if (!isFileName(name) || tooDeep) {
+    if (!isFileName(name) || at.depth() >= kMaxDepth) {
       if (isFolder) at.disable_recursion_pending();
-      listing.truncated = listing.truncated || (isFileName(name) && tooDeep);
+      if (isFileName(name) && belongs(name)) listing.truncated = true;
       continue;
     }
     if (isFolder || !at->is_regular_file(ignored) || !belongs(name)) continue;

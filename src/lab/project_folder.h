@@ -73,7 +73,7 @@ class ProjectFolder {
   };
   struct Listing {
     std::vector<Entry> files;  // sorted by name, at most kMaxListedFiles
-    bool truncated = false;
+    bool truncated = false;    // the project has more files, or deeper folders
   };
   Listing list() const;
 

@@ -46,22 +46,25 @@ TEST(InstrumentedRun, RendersTheRequestedSizeAndRegion) {
   EXPECT_THROW(idsFor(request), UsageError);
 }
 
+// Of a launch of 8x4 pixels.
+std::vector<Diagnostic> findingsOf(const std::string& lecture) {
+  static Engine engine({});
+  const program::Program program = program::parseLecture(lecture, "demo.rt.glsl", "here");
+  RenderRequest request;
+  request.size = {8, 4};
+  return runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+}
+
 // Not the line of the store.
 TEST(InstrumentedRun, NamesTheLineThatMadeAValueNotFinite) {
-  static Engine engine({});
-  const program::Program program = program::parseLecture(
+  const std::vector<Diagnostic> found = findingsOf(
       "float half_(float x) { return 0.5 * x; }\n"
       "void main() { /**** RAY GENERATION SHADER ****/\n"
       "  float x = float(gl_LaunchIDEXT.x) - 3.0, y = float(2u * gl_LaunchIDEXT.x) - 6.0;\n"  // x / x may become 1
       "  float ratio = x\n"
       "    / y;\n"
       "  vec3 color = vec3(half_(ratio));\n"
-      "  gsnSetPixel(vec4(color, 1.0)); }\n",
-      "demo.rt.glsl", "here");
-  RenderRequest request;
-  request.size = {8, 4};
-  const std::vector<Diagnostic> found =
-      runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+      "  gsnSetPixel(vec4(color, 1.0)); }\n");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].id, "Q002");
   EXPECT_EQ(found[0].file, "here/demo.rt.glsl");
@@ -73,17 +76,11 @@ TEST(InstrumentedRun, NamesTheLineThatMadeAValueNotFinite) {
 
 // Operations that pass a NaN on are not its origin, whichever of their operands it is. The library makes this one: ∞ / ∞.
 TEST(InstrumentedRun, DoesNotNameOperationsThatPassAValueOn) {
-  static Engine engine({});
-  const program::Program program = program::parseLecture(
+  const std::vector<Diagnostic> found = findingsOf(
       "#include <quintet/scattering.glsl>\n"
       "void main() { /**** RAY GENERATION SHADER ****/\n"
       "  float value = phaseFunction(0.5, 1e30 + float(gl_LaunchIDEXT.x));\n"
-      "  gsnSetPixel(vec4(0.5 * value, value * 0.5, 1.0 - value, value / 3.0)); }\n",
-      "demo.rt.glsl", "here");
-  RenderRequest request;
-  request.size = {8, 4};
-  const std::vector<Diagnostic> found =
-      runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+      "  gsnSetPixel(vec4(0.5 * value, value * 0.5, 1.0 - value, value / 3.0)); }\n");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].id, "Q002");
   EXPECT_NE(found[0].file.find("quintet/scattering.glsl"), std::string::npos)
