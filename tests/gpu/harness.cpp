@@ -62,11 +62,7 @@ std::unique_ptr<Device> device;
 Device& testDevice() {
   if (device) return *device;
   gpu::ContextOptions options;
-  options.log = [](LogLevel level, const std::string& line) {
-    if (level != LogLevel::warning || !line.starts_with("Vulkan validation: ")) return;
-    const std::lock_guard lock(validationMutex);
-    validationLog.push_back(line);
-  };
+  options.log = testLog();
   device = std::make_unique<Device>(options);
   keepDriversLoaded();
   std::printf("device: %s (%s)%s\n", device->context.info().name.c_str(), device->context.info().driver.c_str(),
@@ -202,6 +198,14 @@ std::vector<std::uint32_t> compileCompute(const std::string& glsl, const Defines
   std::string text = "the shader does not compile:";
   for (const Diagnostic& diagnostic : result.diagnostics) text += "\n" + diagnostic.format();
   throw std::runtime_error(text);
+}
+
+LogSink testLog() {
+  return [](LogLevel level, const std::string& line) {
+    if (level != LogLevel::warning || !line.starts_with("Vulkan validation: ")) return;
+    const std::lock_guard lock(validationMutex);
+    validationLog.push_back(line);
+  };
 }
 
 void dispatchCompute(const std::string& glsl, std::span<const std::byte> constants, std::uint32_t groupsX,

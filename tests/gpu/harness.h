@@ -35,8 +35,11 @@ namespace quintet::test {
 inline constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
 // Returns the device of this process ($QUINTET_DEVICE), which the first call creates; with validation if
-// $QUINTET_VALIDATE is set. Validation messages make the run fail at the end. Throws NoDeviceError.
+// $QUINTET_VALIDATE is set. Throws NoDeviceError.
 gpu::Context& testContext();
+
+// Collects the messages of the validation layer of any device; they make the run fail at the end.
+LogSink testLog();
 
 // RUN_ALL_TESTS, then destroys the device. Fails for validation messages and if no test runs.
 int runDeviceTests();

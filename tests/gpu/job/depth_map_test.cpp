@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "job/observer.h"
 #include "job/render_job.h"
+#include "job/test_engine.h"
 #include "program/load.h"
 #include "temp_folder.h"
 
@@ -44,16 +45,15 @@ class DepthMapTest : public testing::Test {
   DepthMapTest() { writeFile(folder_ / "walls.scene.toml", kScene); }
 
   DepthMap depthOf(const char* programName, const std::function<void(scene::Camera&)>& change = {}) {
-    static Engine engine({.caches = {}});
     const program::Program program = program::loadProgram(programName);
     RenderRequest request;
     request.scene = folder_ / "walls.scene.toml";
     request.size = kSize;
     Observer observer;
-    RenderJob job(engine, resolve(std::move(request), program), observer);
+    RenderJob job(testEngine(), resolve(std::move(request), program), observer);
     scene::Camera camera = job.camera();
     if (change) change(camera);
-    return renderDepthMap(engine, *job.scene()->onDevice, camera, kSize, program);
+    return renderDepthMap(testEngine(), *job.scene()->onDevice, camera, kSize, program);
   }
   static float at(const DepthMap& map, std::uint32_t x, std::uint32_t y) { return map.depths[y * map.size.x + x]; }
 
@@ -124,10 +124,9 @@ TEST_F(DepthMapTest, ShowsTheMiddleOfTheShutter) {
   request.limits.samples = 3;
   request.shutter = ShutterRequest{0, 10};
   Observer observer;
-  Engine engine({.caches = {}});
-  RenderJob job(engine, resolve(request, program::loadProgram("normals")), observer);
+  RenderJob job(testEngine(), resolve(request, program::loadProgram("normals")), observer);
   job.run(request.limits, observer);
-  const DepthMap map = renderDepthMap(engine, job);
+  const DepthMap map = renderDepthMap(testEngine(), job);
   EXPECT_NEAR(map.camera.worldFromCamera[3].z, 5.0f, 1e-4f);
   EXPECT_NEAR(at(map, 17, 6), 3.5f, 1e-4f) << "the plate at z = 1.5";
   EXPECT_NEAR(at(map, 13, 11), 5.0f, 1e-4f) << "the wall";

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "job/engine.h"
+#include "job/test_engine.h"
 #include "program/load.h"
 #include "quintet/shared/pass.h"
 
@@ -13,29 +13,26 @@ namespace {
 
 class EarlyPipelines : public ::testing::Test {
  protected:
-  static Engine& engine() {
-    static Engine engine({.caches = {}});
-    return engine;
-  }
   static program::CompiledProgram compiled(const program::Program& program) {
-    program::CompiledProgram result = program::compile(program, engine().compiler(), {});
+    program::CompiledProgram result = program::compile(program, testEngine().compiler(), {});
     EXPECT_TRUE(result.ok);
     return result;
   }
   static bool isEarly(const program::Program& program) {
-    return EarlyPipeline::make(engine().context(), program, compiled(program), engine().pipelineCache()) != nullptr;
+    return EarlyPipeline::make(testEngine().context(), program, compiled(program), testEngine().pipelineCache()) !=
+           nullptr;
   }
 };
 
 TEST_F(EarlyPipelines, LinkingFindsThePipeline) {
   const program::Program normals = program::loadProgram("<programs/normals>");
   const program::CompiledProgram stages = compiled(normals);
-  gpu::Context& context = engine().context();
-  const auto early = EarlyPipeline::make(context, normals, stages, engine().pipelineCache());
+  gpu::Context& context = testEngine().context();
+  const auto early = EarlyPipeline::make(context, normals, stages, testEngine().pipelineCache());
   ASSERT_TRUE(early);
   const gpu::BindlessSet set(context, 7, shared::kPushConstantBytes);
-  const program::LinkedProgram first(context, set, normals, stages, 1, &engine().pipelineCache());
-  const program::LinkedProgram second(context, set, normals, stages, 2, &engine().pipelineCache());
+  const program::LinkedProgram first(context, set, normals, stages, 1, &testEngine().pipelineCache());
+  const program::LinkedProgram second(context, set, normals, stages, 2, &testEngine().pipelineCache());
   EXPECT_EQ(first.pipeline().handle(), early->linked().pipeline().handle());
   EXPECT_NE(second.pipeline().handle(), early->linked().pipeline().handle()) << "another depth needs another pipeline";
 }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "job/render_job.h"
+#include "job/test_engine.h"
 #include "program/description/parser.h"
 #include "program/gsn/lecture.h"
 #include "program/heat.h"
@@ -91,10 +92,6 @@ struct PrintCounter : Observer {
 
 class HeatTest : public testing::Test {
  protected:
-  static Engine& engine() {
-    static Engine instance({});
-    return instance;
-  }
   static RenderRequest makeRequest(uvec2 size, std::uint64_t samples, const std::vector<std::string>& outputs) {
     RenderRequest request;
     request.size = size;
@@ -103,13 +100,13 @@ class HeatTest : public testing::Test {
     return request;
   }
   RenderResult render(const RenderRequest& request, const program::Program& program) {
-    job_ = std::make_unique<RenderJob>(engine(), resolve(request, program::withHeatMaps(program, request.outputs)),
+    job_ = std::make_unique<RenderJob>(testEngine(), resolve(request, program::withHeatMaps(program, request.outputs)),
                                        observer_);
     return job_->run(request.limits, observer_);
   }
   static RenderRequest boxRequest(std::uint64_t samples) {
     std::vector<std::string> maps = allHeatMaps();
-    if (engine().context().info().software) std::erase(maps, "heat_time");  // is an error there
+    if (testEngine().context().info().software) std::erase(maps, "heat_time");  // is an error there
     RenderRequest request = makeRequest({2, 1}, samples, maps);
     request.loadedScene = quintet::test::boxScene();
     return request;

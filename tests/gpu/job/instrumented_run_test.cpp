@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "job/scene_source.h"
+#include "job/test_engine.h"
 #include "program/gsn/lecture.h"
 
 namespace quintet::job {
@@ -25,10 +26,10 @@ program::Program programWithBadColumn() {
 }
 
 std::string idsFor(const RenderRequest& request) {
-  static Engine engine({});
   const program::Program program = programWithBadColumn();
   std::string ids;
-  for (const Diagnostic& d : runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {}))
+  for (const Diagnostic& d :
+       runInstrumented(testEngine(), program, loadScene(chooseSceneSource({}, program)), request, {}))
     ids += d.id + ":" + std::to_string(d.line) + " ";
   return ids;
 }
@@ -48,11 +49,10 @@ TEST(InstrumentedRun, RendersTheRequestedSizeAndRegion) {
 
 // Of a launch of 8x4 pixels.
 std::vector<Diagnostic> findingsOf(const std::string& lecture) {
-  static Engine engine({});
   const program::Program program = program::parseLecture(lecture, "demo.rt.glsl", "here");
   RenderRequest request;
   request.size = {8, 4};
-  return runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {});
+  return runInstrumented(testEngine(), program, loadScene(chooseSceneSource({}, program)), request, {});
 }
 
 // Not the line of the store.

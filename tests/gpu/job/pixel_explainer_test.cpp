@@ -14,16 +14,12 @@
 #include "base/error.h"
 #include "infinite_sky.h"
 #include "job/explanation_json.h"
+#include "job/test_engine.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
 
 namespace quintet::job {
 namespace {
-
-Engine& engine() {
-  static Engine engine({});
-  return engine;
-}
 
 RenderRequest smallRequest() {
   RenderRequest request;
@@ -36,8 +32,8 @@ RenderRequest smallRequest() {
 PixelExplanation explain(const program::Program& program, uvec2 pixel, std::uint32_t sample,
                          RenderRequest request = smallRequest()) {
   Observer observer;
-  RenderJob job(engine(), resolve(requestForPixel(std::move(request), program, pixel), program), observer);
-  return PixelExplainer(engine(), job).explain(pixel, sample, observer);
+  RenderJob job(testEngine(), resolve(requestForPixel(std::move(request), program, pixel), program), observer);
+  return PixelExplainer(testEngine(), job).explain(pixel, sample, observer);
 }
 
 // The sum of the first samples of a pixel.
@@ -45,7 +41,7 @@ vec4 renderedSum(const program::Program& program, uvec2 pixel, std::uint32_t sam
   RenderRequest request = smallRequest();
   request.region = {pixel.x, pixel.y, 1, 1};
   Observer observer;
-  RenderJob job(engine(), resolve(std::move(request), program), observer);
+  RenderJob job(testEngine(), resolve(std::move(request), program), observer);
   RenderLimits limits;
   limits.samples = samples;
   job.run(limits, observer);
@@ -94,8 +90,8 @@ TEST_P(ExplainedPrograms, SumContributionsToTheValue) {
   RenderRequest request = smallRequest();
   Observer observer;
   request.region = {20, 14, 24, 20};
-  RenderJob job(engine(), resolve(std::move(request), program), observer);
-  PixelExplainer explainer(engine(), job);
+  RenderJob job(testEngine(), resolve(std::move(request), program), observer);
+  PixelExplainer explainer(testEngine(), job);
   float largest = 0.0f;
   for (const uvec2 pixel : {uvec2(20, 14), uvec2(32, 24), uvec2(27, 30), uvec2(43, 33), uvec2(38, 20)}) {
     for (const std::uint32_t sample : {0u, 3u}) {
@@ -133,8 +129,8 @@ TEST(PixelExplainer, ExplainsTheSamplesOfTheRender) {
     RenderRequest request = smallRequest();
     Observer observer;
     const uvec2 pixel(32, 24);
-    RenderJob job(engine(), resolve(requestForPixel(std::move(request), program, pixel), program), observer);
-    PixelExplainer explainer(engine(), job);
+    RenderJob job(testEngine(), resolve(requestForPixel(std::move(request), program, pixel), program), observer);
+    PixelExplainer explainer(testEngine(), job);
     for (std::uint32_t sample = 0; sample < 8; ++sample)
       sum += vec3(explainer.explain(pixel, sample, observer).outputs[0].value);
     expectNear(sum, renderedSum(program, pixel, 8), 1e-4f, name);
@@ -145,9 +141,9 @@ TEST(PixelExplainer, ExplainsFramesAfterTheEarlierOnes) {
   const program::Program program = program::loadProgram("09_progressive");
   RenderRequest request = smallRequest();
   Observer observer;
-  RenderJob job(engine(), resolve(request, program), observer);
-  RenderJob rendered(engine(), resolve(request, program), observer);
-  PixelExplainer explainer(engine(), job);
+  RenderJob job(testEngine(), resolve(request, program), observer);
+  RenderJob rendered(testEngine(), resolve(request, program), observer);
+  PixelExplainer explainer(testEngine(), job);
   std::vector<vec4> frames[3];
   for (std::uint32_t frame = 0; frame < 3; ++frame) {
     rendered.renderer().renderFrame(frame);
@@ -224,8 +220,8 @@ TEST(PixelExplainer, StatesTheNumbersInAbsorbingMedia) {
   request.environment.source = "none";
   const program::Program program = program::loadProgram("pathtracer");
   Observer observer;
-  RenderJob job(engine(), resolve(requestForPixel(std::move(request), program, {32, 24}), program), observer);
-  PixelExplainer explainer(engine(), job);
+  RenderJob job(testEngine(), resolve(requestForPixel(std::move(request), program, {32, 24}), program), observer);
+  PixelExplainer explainer(testEngine(), job);
   int absorbed = 0;
   for (std::uint32_t sample = 0; sample < 8; ++sample)
     absorbed += checkNumbers(explainer.explain({32, 24}, sample, observer), emitted);
@@ -294,8 +290,8 @@ TEST(PixelExplainer, ReportsHitsOfShadowRays) {
   Observer observer;
   RenderRequest request = smallRequest();
   request.region = {24, 16, 16, 24};
-  RenderJob job(engine(), resolve(std::move(request), program), observer);
-  PixelExplainer explainer(engine(), job);
+  RenderJob job(testEngine(), resolve(std::move(request), program), observer);
+  PixelExplainer explainer(testEngine(), job);
   PixelExplanation e;
   std::vector<const ExplainedEvent*> rays;
   for (std::uint32_t i = 0; i < 32 && !(rays.size() == 2 && rays[1]->text("result") == "hit"); ++i) {
@@ -410,9 +406,9 @@ TEST(PixelExplainer, ExplainsProgramsWithManyImages) {
     parameter.type = program::ParameterType::image;
   }
   Observer observer;
-  RenderJob job(engine(), resolve(requestForPixel(smallRequest(), program, {32, 24}), program), observer);
+  RenderJob job(testEngine(), resolve(requestForPixel(smallRequest(), program, {32, 24}), program), observer);
   const ExplainedImage image{{job.scene()->camera, job.scene()->cameraDescription}, job.scene()->size};
-  EXPECT_FALSE(PixelExplainer(engine(), job, image, {32, 24}).explain({32, 24}, 0, observer).events.empty());
+  EXPECT_FALSE(PixelExplainer(testEngine(), job, image, {32, 24}).explain({32, 24}, 0, observer).events.empty());
 }
 
 TEST(PixelExplainer, RecordsCandidates) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "job/pixel_explainer.h"
 #include "job/render_job.h"
+#include "job/test_engine.h"
 #include "program/description/parser.h"
 #include "program/gsn/lecture.h"
 #include "program/heat.h"
@@ -122,10 +123,6 @@ void main() {
 
 class PrintTest : public testing::Test {
  protected:
-  static Engine& engine() {
-    static Engine instance({});
-    return instance;
-  }
   static RenderRequest makeRequest(uvec2 size, std::uint64_t samples) {
     RenderRequest request;
     request.size = size;
@@ -133,7 +130,7 @@ class PrintTest : public testing::Test {
     return request;
   }
   RenderResult render(const RenderRequest& request, const program::Program& program) {
-    job_ = std::make_unique<RenderJob>(engine(), resolve(request, program), observer_);
+    job_ = std::make_unique<RenderJob>(testEngine(), resolve(request, program), observer_);
     return job_->run(request.limits, observer_);
   }
   // Renders the six stages.
@@ -195,8 +192,8 @@ float useNames() {
   RenderRequest request = makeRequest({2, 1}, 1);
   request.loadedScene = quintet::test::boxScene();
   const program::Program program = program::parseProgram(kPrintToml, "box", "box", own);
-  RenderJob job(engine(), resolve(requestForPixel(request, program, {0, 0}), program), observer_);
-  const PixelExplanation explanation = PixelExplainer(engine(), job).explain({0, 0}, 0, observer_);
+  RenderJob job(testEngine(), resolve(requestForPixel(request, program, {0, 0}), program), observer_);
+  const PixelExplanation explanation = PixelExplainer(testEngine(), job).explain({0, 0}, 0, observer_);
   bool hit = false;
   forEachEvent(explanation.events, [&](const ExplainedEvent& event, int) { hit = hit || event.type == "closest-hit"; });
   EXPECT_TRUE(hit);

@@ -12,10 +12,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "job/engine.h"
 #include "job/films.h"
 #include "job/interactive/session.h"
 #include "job/render_job.h"
+#include "job/test_engine.h"
 #include "program/load.h"
 #include "program/new_program.h"
 #include "temp_folder.h"
@@ -34,11 +34,7 @@ class ProgramDraft : public testing::Test {
   }
 
   // Without caches on disk: what a test compiles, another test does not find.
-  static Engine& engine() {
-    static Engine instance({.caches = {}});
-    return instance;
-  }
-  static bool isSoftware() { return engine().context().info().software; }
+  static bool isSoftware() { return testEngine().context().info().software; }
   std::string name() const { return (folder_ / "copy").string(); }
 
   void edit(const std::string& statement) {
@@ -59,12 +55,12 @@ class ProgramDraft : public testing::Test {
   std::unique_ptr<RenderJob> editableJob() {
     RenderRequest editable = request();
     editable.editable = true;
-    return std::make_unique<RenderJob>(engine(), resolve(editable, program::loadProgram(name())), observer_);
+    return std::make_unique<RenderJob>(testEngine(), resolve(editable, program::loadProgram(name())), observer_);
   }
   void setDraft(RenderJob& job) { job.setProgram(program::loadProgram(name()), {.draft = true}, observer_); }
   static std::vector<shared::FixedSum> sums(const RenderResult& result) { return result.film->plane(0).sums; }
   std::vector<shared::FixedSum> reference() {
-    RenderJob job(engine(), resolve(request(), program::loadProgram(name())), observer_);
+    RenderJob job(testEngine(), resolve(request(), program::loadProgram(name())), observer_);
     return sums(job.run(request().limits, observer_));
   }
 
@@ -138,7 +134,7 @@ TEST_F(ProgramDraft, SessionsReplaceItBeforeTheyRefine) {
   double now = 0;
   interactive::SessionRequest session{.program = name(), .render = request(), .drafts = true};
   interactive::Session shown(
-      engine(), session, [&] { return now; }, observer_);
+      testEngine(), session, [&] { return now; }, observer_);
   shown.refine();
   EXPECT_TRUE(shown.hasFullSize());
   edit(kUnusedReturn);
@@ -166,7 +162,7 @@ TEST_F(SavedProgram, InterruptsSteps) {
   session.render.limits.samples = 1u << 20;
   double now = 0;
   interactive::Session shown(
-      engine(), session, [&] { return now; }, observer_);
+      testEngine(), session, [&] { return now; }, observer_);
   int questions = 0;
   const auto interrupted = [&] {
     if (++questions == 3) writeFile(folder_ / "own" / "program.toml", readTextFile(folder_ / "own" / "program.toml"));

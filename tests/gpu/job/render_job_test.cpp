@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "job/film_store.h"
 #include "job/films.h"
+#include "job/test_engine.h"
 #include "job/watch.h"
 #include "program/load.h"
 #include "temp_folder.h"
@@ -54,18 +55,14 @@ RenderRequest makeRequest(std::uint64_t samples) {
 
 class RenderJobTest : public testing::Test {
  protected:
-  static Engine& engine() {
-    static Engine instance({});
-    return instance;
-  }
   std::unique_ptr<RenderJob> makeJob(const RenderRequest& request, const char* program = "normals") {
-    return std::make_unique<RenderJob>(engine(), resolve(request, program::loadProgram(program)), observer_);
+    return std::make_unique<RenderJob>(testEngine(), resolve(request, program::loadProgram(program)), observer_);
   }
   // The sums of a render without interruption.
   std::vector<shared::FixedSum> reference(std::uint64_t samples) {
     TestObserver observer;
     const RenderRequest request = makeRequest(samples);
-    RenderJob job(engine(), resolve(request, program::loadProgram("normals")), observer);
+    RenderJob job(testEngine(), resolve(request, program::loadProgram("normals")), observer);
     return job.run(request.limits, observer).film->plane(0).sums;
   }
 
@@ -233,7 +230,7 @@ class AnimatedJobTest : public RenderJobTest {
     request.scene = folder_ / "a.scene.toml";
     request.frames = frames;
     request.limits.error = error;
-    return RenderJob(engine(), resolve(request, program::loadProgram("pathtracer")), recorder)
+    return RenderJob(testEngine(), resolve(request, program::loadProgram("pathtracer")), recorder)
         .run(request.limits, recorder);
   }
   const quintet::test::TempFolder folder_;
@@ -352,10 +349,10 @@ TEST_F(RenderJobTest, ScenesOutliveJobs) {
   const RenderRequest request = makeRequest(4);
   std::shared_ptr<PreparedScene> scene;
   const ResolvedJob broken = resolve(request, program::loadProgram((folder / "broken.rt.glsl").string()));
-  EXPECT_THROW(RenderJob(engine(), broken, observer_, scene), ProgramError);
+  EXPECT_THROW(RenderJob(testEngine(), broken, observer_, scene), ProgramError);
   ASSERT_TRUE(scene);
   const PreparedScene* loaded = scene.get();
-  RenderJob job(engine(), resolve(request, program::loadProgram("normals")), observer_, scene);
+  RenderJob job(testEngine(), resolve(request, program::loadProgram("normals")), observer_, scene);
   EXPECT_EQ(scene.get(), loaded);
   EXPECT_EQ(job.run(request.limits, observer_).provenance.samples, 4u);
 }
@@ -372,14 +369,14 @@ TEST_F(RenderJobTest, ScenesAreRebuiltForAnyHitShaders) {
   };
   const RenderRequest request = makeRequest(1);
   std::shared_ptr<PreparedScene> scene;
-  const RenderJob first(engine(), resolve(request, write("")), observer_, scene);
+  const RenderJob first(testEngine(), resolve(request, write("")), observer_, scene);
   const std::shared_ptr<PreparedScene> plain = scene;
   const program::Program counting = write("void main() { /**** ANY-HIT SHADER ****/ payload.color += 0.1; }\n");
-  const RenderJob second(engine(), resolve(request, counting), observer_, scene);
+  const RenderJob second(testEngine(), resolve(request, counting), observer_, scene);
   EXPECT_NE(scene, plain);
   EXPECT_EQ(scene->singleAnyHit, program::SingleAnyHit::all);
   const std::shared_ptr<PreparedScene> single = scene;
-  const RenderJob third(engine(), resolve(request, write("")), observer_, scene);
+  const RenderJob third(testEngine(), resolve(request, write("")), observer_, scene);
   EXPECT_EQ(scene, single);
 }
 
@@ -393,7 +390,7 @@ TEST_F(RenderJobTest, WatchingReportsABrokenProgramAndRecovers) {
   };
   const RenderRequest request = makeRequest(1);
   write("missing");
-  LiveJob live(engine(), program, [&] { return resolve(request, program::loadProgram(program)); });
+  LiveJob live(testEngine(), program, [&] { return resolve(request, program::loadProgram(program)); });
   EXPECT_FALSE(live.reload(observer_));
   EXPECT_FALSE(observer_.reported.empty());
   EXPECT_EQ(live.job(), nullptr);

@@ -16,21 +16,17 @@
 #include "base/file.h"
 #include "base/luminance.h"
 #include "infinite_sky.h"
+#include "job/test_engine.h"
 #include "program/load.h"
 #include "temp_folder.h"
 
 namespace quintet::job {
 namespace {
 
-Engine& searchEngine() {
-  static Engine engine({});
-  return engine;
-}
-
 SearchResult search(const std::string& program, RenderRequest request, const SearchOptions& options) {
   Observer observer;
-  RenderJob job(searchEngine(), resolve(std::move(request), program::loadProgram(program)), observer);
-  return searchSamples(searchEngine(), job, options, observer);
+  RenderJob job(testEngine(), resolve(std::move(request), program::loadProgram(program)), observer);
+  return searchSamples(testEngine(), job, options, observer);
 }
 
 // A floor under a small lamp: paths without light sampling seldom hit it.
@@ -143,8 +139,8 @@ TEST(SampleSearch, FirefliesRequireSamples) {
               testing::AllOf(testing::StartsWith("fireflies: "), testing::HasSubstr("progressive' accumulates")));
   for (const auto& [program, request] : {std::pair("normals", few), {"09_progressive", frames}}) {
     Recorder observer;
-    RenderJob job(searchEngine(), resolve(request, program::loadProgram(program)), observer);
-    const SearchResult found = searchSamples(searchEngine(), job, {}, observer);
+    RenderJob job(testEngine(), resolve(request, program::loadProgram(program)), observer);
+    const SearchResult found = searchSamples(testEngine(), job, {}, observer);
     EXPECT_EQ(found.samples, program == std::string("normals") ? 3u : 2u);
     EXPECT_EQ(found.frames, program != std::string("normals"));
     EXPECT_THAT(observer.notes, testing::Contains(testing::StartsWith("fireflies are not searched: ")));
@@ -167,9 +163,8 @@ class DottedProgram {
     request_.frames.accumulated = 2;
   }
   SearchResult search(Observer& observer, std::size_t limit) const {
-    RenderJob job(searchEngine(), resolve(request_, program::loadProgram((folder_ / "dots.rt.glsl").string())),
-                  observer);
-    return searchSamples(searchEngine(), job, {.fireflies = false, .limit = limit}, observer);
+    RenderJob job(testEngine(), resolve(request_, program::loadProgram((folder_ / "dots.rt.glsl").string())), observer);
+    return searchSamples(testEngine(), job, {.fireflies = false, .limit = limit}, observer);
   }
 
  private:

@@ -14,9 +14,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "job/depth_map.h"
-#include "job/engine.h"
 #include "job/observer.h"
 #include "job/render_job.h"
+#include "job/test_engine.h"
 #include "overlay/line_image.h"
 #include "overlay/ray_overlay.h"
 #include "program/load.h"
@@ -65,17 +65,13 @@ class RayImageTest : public testing::Test {
  protected:
   RayImageTest() { writeFile(folder_ / "wall.scene.toml", kRayScene); }
 
-  static job::Engine& engine() {
-    static job::Engine engine({.caches = {}});
-    return engine;
-  }
   std::unique_ptr<job::RenderJob> makeJob() {
     job::RenderRequest request;
     request.scene = folder_ / "wall.scene.toml";
     request.size = kRayImageSize;
     request.limits.samples = 4;
-    return std::make_unique<job::RenderJob>(engine(), job::resolve(std::move(request), program::loadProgram("normals")),
-                                            observer_);
+    return std::make_unique<job::RenderJob>(
+        job::testEngine(), job::resolve(std::move(request), program::loadProgram("normals")), observer_);
   }
 
   static io::Image black() {
@@ -97,9 +93,9 @@ class RayImageTest : public testing::Test {
 
 TEST_F(RayImageTest, DrawsHiddenRaysFaintly) {
   const auto job = makeJob();
-  const job::DepthMap depth =
-      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kRayImageSize, job->resolved().program);
-  const io::Image image = drawRays(engine().context(), threeLines(), depth, black(), {});
+  const job::DepthMap depth = job::renderDepthMap(job::testEngine(), *job->scene()->onDevice, job->camera(),
+                                                  kRayImageSize, job->resolved().program);
+  const io::Image image = drawRays(job::testEngine().context(), threeLines(), depth, black(), {});
   const int before = brightness(image, -1, 3), behind = brightness(image, -4, 6), free = brightness(image, 4, 6);
   EXPECT_GT(before, 16 * 200);
   EXPECT_NEAR(free, before, 0.2 * before) << "nothing hides it";
@@ -109,8 +105,8 @@ TEST_F(RayImageTest, DrawsHiddenRaysFaintly) {
 
 TEST_F(RayImageTest, EmphasizesTheSelectedRay) {
   const auto job = makeJob();
-  const job::DepthMap depth =
-      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kRayImageSize, job->resolved().program);
+  const job::DepthMap depth = job::renderDepthMap(job::testEngine(), *job->scene()->onDevice, job->camera(),
+                                                  kRayImageSize, job->resolved().program);
   const RayOverlay overlay = rayOverlay(threeLines(), 1.0f);
   OverlayView view{job->camera(), {}};
   view.placement.size = kRayImageSize;
@@ -119,7 +115,7 @@ TEST_F(RayImageTest, EmphasizesTheSelectedRay) {
   for (std::size_t i = 0; i < 2; ++i) {
     OverlayStyle style;
     if (i == 1) style.selected = 2;
-    images[i] = drawLines(engine().context(), shaders, black(), overlayLines(overlay, view, style, &depth),
+    images[i] = drawLines(job::testEngine().context(), shaders, black(), overlayLines(overlay, view, style, &depth),
                           kRayImageSize, reversedDepths(depth));
   }
   EXPECT_GT(brightness(images[1], 4, 6), 1.5 * brightness(images[0], 4, 6)) << "wider";

@@ -17,6 +17,7 @@
 #include "job/explanation_diff.h"
 #include "job/films.h"
 #include "job/interactive/command_json.h"
+#include "job/test_engine.h"
 #include "program/load.h"
 #include "temp_folder.h"
 
@@ -61,10 +62,6 @@ class SessionTest : public testing::Test {
  protected:
   SessionTest() { writeFile(folder_ / "a.scene.toml", kScene); }
 
-  static Engine& engine() {
-    static Engine instance({});
-    return instance;
-  }
   RenderRequest request(std::uint32_t samples = 6) const {
     RenderRequest request;
     request.scene = folder_ / "a.scene.toml";
@@ -75,11 +72,11 @@ class SessionTest : public testing::Test {
   }
   std::unique_ptr<Session> makeSession(const RenderRequest& request, const std::string& program = "pathtracer") {
     return std::make_unique<Session>(
-        engine(), SessionRequest{program, request}, [this] { return now_; }, observer_);
+        testEngine(), SessionRequest{program, request}, [this] { return now_; }, observer_);
   }
   // The sums of output 0 of an ordinary render.
   std::vector<shared::FixedSum> reference(const RenderRequest& request, const std::string& program = "pathtracer") {
-    RenderJob job(engine(), resolve(request, program::loadProgram(program)), observer_);
+    RenderJob job(testEngine(), resolve(request, program::loadProgram(program)), observer_);
     return job.run(request.limits, observer_).film->plane(0).sums;
   }
   static std::vector<shared::FixedSum> sums(const Session& session) { return session.result().film->plane(0).sums; }
@@ -88,8 +85,8 @@ class SessionTest : public testing::Test {
   PixelExplanation explainRender(const RenderRequest& request, uvec2 pixel, std::uint32_t sample,
                                  const std::string& program = "pathtracer") {
     const program::Program loaded = program::loadProgram(program);
-    RenderJob job(engine(), resolve(requestForPixel(request, loaded, pixel), loaded), observer_);
-    return PixelExplainer(engine(), job).explain(pixel, sample, observer_);
+    RenderJob job(testEngine(), resolve(requestForPixel(request, loaded, pixel), loaded), observer_);
+    return PixelExplainer(testEngine(), job).explain(pixel, sample, observer_);
   }
 
   template <class T>
@@ -588,7 +585,7 @@ TEST_F(SessionExplains, FramesAndContinues) {
   frames.frames.accumulated = 4;
   expectEqual(session->explain({20, 12}, 2), explainRender(frames, {20, 12}, 2, "lessons/09_progressive"));
   session->refine();
-  RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
+  RenderJob job(testEngine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
   EXPECT_EQ(session->result().film->image(0).data, job.run(frames.limits, observer_).film->image(0).data);
 }
 
@@ -833,7 +830,7 @@ TEST_F(SessionTest, SelectsOptionalOutputs) {
   session->refine();
   RenderRequest same = request();
   same.outputs = {"normal"};
-  RenderJob job(engine(), resolve(same, program::loadProgram("pathtracer")), observer_);
+  RenderJob job(testEngine(), resolve(same, program::loadProgram("pathtracer")), observer_);
   const RenderResult expected = job.run(same.limits, observer_), result = session->result();
   const std::vector<std::string> names = program::outputNames(session->program());
   const auto normal = static_cast<std::size_t>(std::ranges::find(names, "normal") - names.begin());
@@ -885,7 +882,7 @@ TEST_F(SessionTest, RendersFramesOfProgramsThatAccumulate) {
   EXPECT_EQ(find<ImageUpdated>(events)->samples, 3u);
   EXPECT_TRUE(find<ImageUpdated>(events)->complete);
   frames.frames.accumulated = 3;
-  RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/01_first_ray")), observer_);
+  RenderJob job(testEngine(), resolve(frames, program::loadProgram("lessons/01_first_ray")), observer_);
   EXPECT_EQ(session->result().film->image(0).data, job.run(frames.limits, observer_).film->image(0).data);
 }
 
@@ -896,7 +893,7 @@ TEST_F(SessionTest, FramesStartOverAfterEdits) {
     frames.scene.clear();
     frames.size = size;
     frames.frames.accumulated = count;
-    RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
+    RenderJob job(testEngine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
     return job.run(frames.limits, observer_).film->image(0).data;
   };
   RenderRequest frames = request(3);
