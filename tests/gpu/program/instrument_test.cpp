@@ -207,6 +207,8 @@ TEST(Instrument, ReportsOutputsOutsideOfTheImage) {
 TEST(Outputs, IgnorePixelsOutsideOfTheImage) {
   const program::Program program = storing(
       "storeOutput(kOutput_color, launchPixel() * 100000u + 7000u, vec4(1.0));\n"
+      "storeOutput(kOutput_color, uvec2(16u, gl_LaunchIDEXT.y), vec4(1.0));\n"
+      "storeOutput(kOutput_color, uvec2(gl_LaunchIDEXT.x, 16u), vec4(1.0));\n"
       "storeOutput(1u + gl_LaunchIDEXT.x * 40u, launchPixel(), vec4(1.0));\n"
       "addOutput(kOutput_color, launchPixel() - uvec2(1000), vec4(1.0));\n"
       "storeCoverage(kOutput_color, uvec2(0xFFFFFFFFu), 3u, 1u);\n"

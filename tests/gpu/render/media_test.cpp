@@ -116,6 +116,23 @@ TEST(NestedMedia, SolidsInSolidsHaveTheRelativeIndex) {
   }
 }
 
+// A path that meets the back of a surface of a solid that it has not entered leaves the solid that fills the space. In air it
+// stays in air.
+TEST(NestedMedia, TheBackOfAnUnknownSolidEndsTheSolidAround) {
+  const vec3 outer(0.8f, 0.6f, 0.9f);
+  for (const bool around : {true, false}) {
+    SceneBuilder scene =
+        throughSlabs(around ? std::vector<Slab>{{-0.8f, 0.8f, medium(1.0f, outer, 0.0f)}} : std::vector<Slab>{}, 0.0f);
+    scene.add(quad({-3, -3, 0.1f}, {0, 6, 0}, {6, 0, 0}), medium(1.0f, vec3(0.3f), 1.0f));  // faces -z
+    const vec3 exact = around ? glm::pow(outer, vec3(0.7f)) : vec3(1.0f);
+    for (const char* program : {"pathtracer", "naive"}) {
+      SCOPED_TRACE(testing::Message() << program << around);
+      expectUniform(renderImage(scene, nestedOptions(program)), vec4(kWall * exact, 1.0f),
+                    {.error = 0.005, .rounding = 3e-4});
+    }
+  }
+}
+
 // Two solids of one material that overlap are one solid: the surfaces inside do not exist.
 TEST(NestedMedia, OverlappingSolidsOfOneMaterialAreOne) {
   const vec3 color(0.3f, 0.6f, 0.9f);
@@ -172,15 +189,17 @@ TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
     std::uint32_t outside;  // 1: with dispersion, 2: without
     float transmission, dispersion;
     std::uint32_t thin = 0;
+    std::uint32_t only = 0;  // the path has only this channel left
   };
   struct Answer {
     float ior, dispersion;
     vec3 transmitted;
   };
-  const std::vector<Query> queries{{1, 1, 0}, {1, 0, 0},    {2, 1, 0},    {1, 1, 0.5f},
-                                   {0, 1, 0}, {1, 1, 0, 1}, {1, 0, 0, 1}, {2, 0, 0, 1}};  // only panes keep their index
+  const std::vector<Query> queries{{1, 1, 0},      {1, 0, 0},    {2, 1, 0},    {1, 1, 0.5f}, {0, 1, 0},
+                                   {1, 1, 0, 1},   {1, 0, 0, 1}, {2, 0, 0, 1},  // only panes keep their index
+                                   {1, 1, 0, 0, 1}};
   const auto answers = runCompute<Answer>(prelude + R"(
-    struct Query { uint outside; float transmission; float dispersion; uint thin; };
+    struct Query { uint outside; float transmission; float dispersion; uint thin; uint only; };
     struct Answer { float ior; float dispersion; vec3 transmitted; };
     #define In Query
     #define Out Answer
@@ -188,15 +207,15 @@ TEST(NestedMedia, SetsOfSolidsAndIndicesFollowTheRules) {
       BsdfParameters p = BsdfParameters(vec3(0.8), 0.0, 0.1, q.transmission, 1.8, true, q.thin != 0u, 1.0, vec3(1.0), 0.0, 0.01,
                                         vec3(0.0, 0.0, 1.0), vec3(0.0), 0.25, 0.0, vec3(0.5), 0.0, 0.0, 1.3, 400.0,
                                         q.dispersion, vec3(1.0));
-      setOutside(p, q.outside, 2u);
+      setOutside(p, q.outside, q.only != 0u ? 2u | kChannelOnly : 2u);
       return Answer(p.ior, p.dispersion, p.transmitted);
     }
   )",
                                           queries, queries.size(), device.options());
   const float ofDispersive = 1.5f + 0.025f * 0.5f;  // of channel 2
-  const float iors[] = {1.8f / ofDispersive, 1.8f / ofDispersive, 1.8f / 1.25f, 1.8f / ofDispersive, 1.8f, 1.8f,
-                        1.8f / ofDispersive, 1.8f / 1.25f};
-  const float dispersions[] = {1, 0, 0, 0.5f, 0, 0, 0, 0};
+  const float iors[] = {1.8f / ofDispersive, 1.8f / ofDispersive, 1.8f / 1.25f,       1.8f / ofDispersive, 1.8f, 1.8f,
+                        1.8f / ofDispersive, 1.8f / 1.25f,        1.8f / ofDispersive};
+  const float dispersions[] = {1, 0, 0, 0.5f, 0, 0, 0, 0, 1};
   for (std::size_t i = 0; i < queries.size(); ++i) {
     EXPECT_NEAR(answers[i].ior, iors[i], 1e-6f) << i;
     EXPECT_EQ(answers[i].dispersion, dispersions[i]) << i;

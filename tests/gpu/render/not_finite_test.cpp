@@ -15,7 +15,8 @@ using render::NotFinitePixels;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// `color` is NaN at the pixels of `badColor`, in one sample; `depth` is infinite at those of `badDepth`.
+// `color` is NaN at the pixels of `badColor`, in one sample and in one component, the next one in each column; `depth` is
+// infinite at those of `badDepth`.
 Files programFiles(const std::string& badColor, const std::string& badDepth) {
   const std::string head = "#version 460\n#extension GL_EXT_ray_tracing : require\n";
   return {{"m.rmiss", head + "void main() {}\n"},
@@ -27,7 +28,7 @@ void main() {
   const float t = float(pixel.x) + 1.0;
   vec4 value = vec4(t, 1.0, 2.0, 1.0);
   if ((launch.firstSample == 1u || kAccumulates) && ()" +
-                            badColor + R"()) value.y = sqrt(-t);
+                            badColor + R"()) value[pixel.x & 3u] = sqrt(-t);
 #ifdef QUINTET_OUTPUT_depth
   if (launch.firstSample == 0u) storeOutput(kOutput_depth, pixel, vec4(()" +
                             badDepth + R"() ? uintBitsToFloat(0x7F800000u) : t));
