@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "gpu/line_list.h"
+#include "gpu/present/line_list.h"
 #include "io/image.h"
 #include "job/pixel_explanation.h"
 #include "overlay/ray_overlay.h"

@@ -3,7 +3,7 @@
 #include "check/check.h"
 #include "check/scene_facts.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet {

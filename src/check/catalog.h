@@ -15,7 +15,7 @@ struct DiagnosticInfo {
   std::string_view id;  // "Q101"
   Severity severity = Severity::error;
   // Source file that reports it, without extension: a rule below src/check/rules ("across_stages/payload_types"), or a
-  // front end, the checks of modules or the instrumented run below src ("program/gsn/split").
+  // front end, the checks of modules or the instrumented run below src ("program/lecture/split").
   std::string_view rule;
   std::string_view title;  // what is wrong, without names: a few words, no period
   std::string_view why;    // why it matters: one sentence

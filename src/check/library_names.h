@@ -10,7 +10,7 @@ namespace quintet::check {
 
 inline constexpr std::string_view kLecturePrefix = "gsn", kLectureSuffix = "_";
 
-// In the lecture form, `hit` becomes this attribute with the report (program/gsn/stage.cpp).
+// In the lecture form, `hit` becomes this attribute with the report (program/lecture/stage.cpp).
 inline constexpr std::string_view kLectureAttribute = "gsnHitAttribute_";
 
 // The name of a structure of the library in the lecture form: "gsnLaunch_" for "Launch".

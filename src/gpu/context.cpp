@@ -17,7 +17,7 @@
 #include "gpu/error.h"
 #include "gpu/instance.h"
 #include "gpu/pipeline_store.h"
-#include "gpu/presentation.h"
+#include "gpu/present/presentation.h"
 #include "gpu/submissions.h"
 
 namespace quintet::gpu {

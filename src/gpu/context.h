@@ -14,8 +14,8 @@
 
 #include "base/log.h"
 #include "gpu/device_info.h"
-#include "gpu/frame_semaphores.h"
 #include "gpu/memory.h"
+#include "gpu/present/frame_semaphores.h"
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {
@@ -38,7 +38,7 @@ struct ContextOptions {
   // default is true if $QUINTET_VALIDATE is set and not "0". A missing layer is an Error.
   bool validate = validationRequested();
   LogSink log;
-  // Opens a device that can present to this surface instead of one with ray tracing (gpu/presentation.h).
+  // Opens a device that can present to this surface instead of one with ray tracing (gpu/present/presentation.h).
   std::optional<SurfaceSource> surface = {};
 
   static bool validationRequested();

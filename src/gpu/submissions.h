@@ -12,7 +12,7 @@
 #include <mutex>
 #include <vector>
 
-#include "gpu/frame_semaphores.h"
+#include "gpu/present/frame_semaphores.h"
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {

@@ -27,7 +27,7 @@
 #include "lab/program_files.h"
 #include "lab/source_format.h"
 #include "lab/zip.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 #include "shader/library.h"
 

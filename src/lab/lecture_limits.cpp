@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::lab {
 namespace {

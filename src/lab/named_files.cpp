@@ -18,7 +18,7 @@
 #include "lab/little_endian.h"
 #include "lab/project_folder.h"
 #include "lab/request_target.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 #include "shader/include_resolver.h"
 

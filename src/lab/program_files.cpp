@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 #include "program/new_program.h"
 

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "lab/named_files.h"
 #include "lab/program_files.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet::lab {

@@ -7,7 +7,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/image.h"
-#include "gpu/line_renderer.h"
+#include "gpu/present/line_renderer.h"
 
 namespace quintet::overlay {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/math.h"
 #include "gpu/context.h"
-#include "gpu/line_list.h"
+#include "gpu/present/line_list.h"
 #include "io/image.h"
 #include "overlay/window_shaders.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "gpu/line_list.h"
+#include "gpu/present/line_list.h"
 #include "job/depth_map.h"
 #include "job/pixel_explanation.h"
 #include "overlay/image_placement.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "program/gsn/text.h"
+#include "program/lecture/text.h"
 #include "shader/include_resolver.h"
 
 namespace quintet::program {

@@ -14,8 +14,8 @@
 #include "base/file_roots.h"
 #include "base/suggestion.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
-#include "program/gsn/uniforms.h"
+#include "program/lecture/lecture.h"
+#include "program/lecture/uniforms.h"
 #include "shader/include_resolver.h"
 
 namespace quintet {

@@ -23,7 +23,7 @@
 #include "base/stopwatch.h"
 #include "gpu/driver_environment.h"
 #include "gpu/image.h"
-#include "gpu/line_renderer.h"
+#include "gpu/present/line_renderer.h"
 #include "gpu/timer.h"
 #include "job/interactive/light_properties.h"
 #include "job/interactive/session.h"

@@ -37,7 +37,7 @@
 #include "job/scene_source.h"
 #include "mutants.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "render/renderer/renderer.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/defaults/default_environment.h"

@@ -18,7 +18,7 @@
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
-#include "gpu/line_renderer.h"
+#include "gpu/present/line_renderer.h"
 #include "io/codec.h"
 #include "job/depth_map.h"
 #include "job/explanation_json.h"

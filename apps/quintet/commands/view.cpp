@@ -15,7 +15,7 @@
 #include "cli/failure.h"
 #include "cli/view_options.h"
 #include "gpu/error.h"
-#include "gpu/line_renderer.h"
+#include "gpu/present/line_renderer.h"
 #include "io/codec.h"
 #include "job/explanation_json.h"
 #include "job/interactive/command_json.h"

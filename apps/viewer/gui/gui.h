@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "gpu/draw_list.h"
+#include "gpu/present/draw_list.h"
 #include "viewer/settings.h"
 #include "window/window.h"
 

@@ -142,7 +142,7 @@ void writeCorpora(const fs::path& root, const fs::path& out) {
   writeDictionary(out / "glb.dict", literals(root, Folders{"src/scene/gltf"}), true);
   writeDictionary(out / "scene.dict", literals(root, Folders{"src/scene/toml"}), false);
   writeDictionary(out / "program.dict", literals(root, Folders{"src/program/description"}), false);
-  writeDictionary(out / "lecture.dict", literals(root, Folders{"src/program/gsn"}), false);
+  writeDictionary(out / "lecture.dict", literals(root, Folders{"src/program/lecture"}), false);
   writeDictionary(out / "lab_message.dict",
                   literals(root, std::array<std::string_view, 2>{"src/job/interactive", "src/lab"}), true);
   writeDictionary(out / "film.dict", literals(root, std::array<std::string_view, 1>{"src/render/film"}), true);

@@ -12,7 +12,7 @@
 #include "check/case_file.h"
 #include "program/compile.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "seeds.h"
 #include "shader/compiler.h"
 #include "shader/stage.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lecture-form files. Their errors are diagnostics, not exceptions.
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "target.h"
 
 namespace quintet::fuzz {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Presenting to a surface without a window (VK_EXT_headless_surface), which lavapipe has.
-#include "gpu/swapchain.h"
+#include "gpu/present/swapchain.h"
 
 #include <array>
 #include <cstddef>
@@ -15,10 +15,10 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "gpu/draw_list_renderer.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
-#include "gpu/line_renderer.h"
+#include "gpu/present/draw_list_renderer.h"
+#include "gpu/present/line_renderer.h"
 #include "harness.h"
 #include "shader/compiler.h"
 

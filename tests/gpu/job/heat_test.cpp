@@ -10,8 +10,8 @@
 #include "job/render_job.h"
 #include "job/test_engine.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
 #include "program/heat.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 #include "scene_builder.h"
 

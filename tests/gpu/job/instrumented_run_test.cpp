@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "job/scene_source.h"
 #include "job/test_engine.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::job {
 namespace {

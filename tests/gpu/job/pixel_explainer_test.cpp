@@ -15,7 +15,7 @@
 #include "infinite_sky.h"
 #include "job/explanation_json.h"
 #include "job/test_engine.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet::job {

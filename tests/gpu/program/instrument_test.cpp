@@ -12,7 +12,7 @@
 #include "job/runnable_program.h"
 #include "job/scene_source.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 #include "render/rendered_image.h"
 #include "scene/defaults/auto_camera.h"

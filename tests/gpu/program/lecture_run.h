@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../render/rendered_image.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::test {
 

@@ -6,7 +6,7 @@
 #include "harness.h"
 #include "job/scene_source.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "check/diagram/svg.h"
 #include "check_test_support.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet::check {

@@ -21,7 +21,7 @@
 #include "case_file.h"
 #include "check/catalog.h"
 #include "check_test_support.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::check {
 namespace {

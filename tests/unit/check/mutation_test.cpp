@@ -13,7 +13,7 @@
 #include "check_test_support.h"
 #include "job/scene_source.h"
 #include "program/description/parser.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "temp_folder.h"
 
 namespace quintet::check {

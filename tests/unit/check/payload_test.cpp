@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "check_test_support.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::check {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/presentation.h"
+#include "gpu/present/presentation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

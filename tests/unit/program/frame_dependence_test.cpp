@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet::program {

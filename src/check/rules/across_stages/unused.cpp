@@ -7,7 +7,7 @@
 #include "check/rules/across_stages/binding_names.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 namespace quintet::check {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textured triangles in two dimensions: what a user interface draws.
-#ifndef QUINTET_GPU_DRAW_LIST_H
-#define QUINTET_GPU_DRAW_LIST_H
+#ifndef QUINTET_GPU_PRESENT_DRAW_LIST_H
+#define QUINTET_GPU_PRESENT_DRAW_LIST_H
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/line_renderer.h"
+#include "gpu/present/line_renderer.h"
 
 #include <cassert>
 #include <cstddef>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inputs of a lecture-form file: its uniforms, and those that are predeclared.
-#ifndef QUINTET_PROGRAM_GSN_UNIFORMS_H
-#define QUINTET_PROGRAM_GSN_UNIFORMS_H
+#ifndef QUINTET_PROGRAM_LECTURE_UNIFORMS_H
+#define QUINTET_PROGRAM_LECTURE_UNIFORMS_H
 
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "program/description/parameter.h"
-#include "program/gsn/text.h"
+#include "program/lecture/text.h"
 
 namespace quintet::program {
 

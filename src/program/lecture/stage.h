@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The GLSL of one stage of a lecture-form file: the file with the text of other stages blanked, so that line numbers stay,
 // after the declarations that the form provides.
-#ifndef QUINTET_PROGRAM_GSN_STAGE_H
-#define QUINTET_PROGRAM_GSN_STAGE_H
+#ifndef QUINTET_PROGRAM_LECTURE_STAGE_H
+#define QUINTET_PROGRAM_LECTURE_STAGE_H
 
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "program/gsn/split.h"
-#include "program/gsn/text.h"
-#include "program/gsn/uniforms.h"
+#include "program/lecture/split.h"
+#include "program/lecture/text.h"
+#include "program/lecture/uniforms.h"
 
 namespace quintet::program {
 

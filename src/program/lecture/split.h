@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Splits a lecture-form file into its stages: which bytes are common, which belong to which main(), and which common
 // functions each stage needs.
-#ifndef QUINTET_PROGRAM_GSN_SPLIT_H
-#define QUINTET_PROGRAM_GSN_SPLIT_H
+#ifndef QUINTET_PROGRAM_LECTURE_SPLIT_H
+#define QUINTET_PROGRAM_LECTURE_SPLIT_H
 
 #include <utility>
 #include <vector>
 
-#include "program/gsn/text.h"
+#include "program/lecture/text.h"
 #include "shader/compiler.h"
 
 namespace quintet::program {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lecture-form file is untrusted text: reading it terminates, with diagnostics that point into it or with stages that keep
 // its lines.
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "program/description/generated_glsl.h"
-#include "program/gsn/stage.h"
+#include "program/lecture/stage.h"
 #include "shader/include_resolver.h"
 
 namespace quintet::program {

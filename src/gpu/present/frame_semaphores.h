@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a submission is ordered with the images of a swapchain.
-#ifndef QUINTET_GPU_FRAME_SEMAPHORES_H
-#define QUINTET_GPU_FRAME_SEMAPHORES_H
+#ifndef QUINTET_GPU_PRESENT_FRAME_SEMAPHORES_H
+#define QUINTET_GPU_PRESENT_FRAME_SEMAPHORES_H
 
 #include "gpu/vulkan.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/draw_list_renderer.h"
+#include "gpu/present/draw_list_renderer.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lecture form: which text becomes which stage, the errors, and the line and column of messages of the compiler.
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 
 #include <algorithm>
 

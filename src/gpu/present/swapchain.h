@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The images of a window: acquires one, lets the caller draw it, and presents it. Follows changes of the window's size.
 // All calls for one context come from the same thread.
-#ifndef QUINTET_GPU_SWAPCHAIN_H
-#define QUINTET_GPU_SWAPCHAIN_H
+#ifndef QUINTET_GPU_PRESENT_SWAPCHAIN_H
+#define QUINTET_GPU_PRESENT_SWAPCHAIN_H
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which devices can present to a surface, and what is enabled on them. Presenting requires no ray tracing, so an image
 // that one device renders can be shown by a different one.
-#ifndef QUINTET_GPU_PRESENTATION_H
-#define QUINTET_GPU_PRESENTATION_H
+#ifndef QUINTET_GPU_PRESENT_PRESENTATION_H
+#define QUINTET_GPU_PRESENT_PRESENTATION_H
 
 #include <string>
 #include <vector>

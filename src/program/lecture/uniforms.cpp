@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "program/gsn/uniforms.h"
+#include "program/lecture/uniforms.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pipelines that rasterize triangles with alpha blending to one color attachment (dynamic rendering), and read one image.
-#ifndef QUINTET_GPU_GRAPHICS_PIPELINE_H
-#define QUINTET_GPU_GRAPHICS_PIPELINE_H
+#ifndef QUINTET_GPU_PRESENT_GRAPHICS_PIPELINE_H
+#define QUINTET_GPU_PRESENT_GRAPHICS_PIPELINE_H
 
 #include <cstddef>
 #include <cstdint>

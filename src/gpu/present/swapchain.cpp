@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/swapchain.h"
+#include "gpu/present/swapchain.h"
 
 #include <algorithm>
 #include <limits>

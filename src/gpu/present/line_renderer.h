@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws antialiased lines with a width and an outline, hidden parts faint and dashed.
-#ifndef QUINTET_GPU_LINE_RENDERER_H
-#define QUINTET_GPU_LINE_RENDERER_H
+#ifndef QUINTET_GPU_PRESENT_LINE_RENDERER_H
+#define QUINTET_GPU_PRESENT_LINE_RENDERER_H
 
 #include <array>
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
-#include "gpu/graphics_pipeline.h"
 #include "gpu/image.h"
-#include "gpu/line_list.h"
-#include "gpu/swapchain.h"
+#include "gpu/present/graphics_pipeline.h"
+#include "gpu/present/line_list.h"
+#include "gpu/present/swapchain.h"
 
 namespace quintet::gpu {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "program/gsn/split.h"
+#include "program/lecture/split.h"
 
 #include <fmt/format.h>
 

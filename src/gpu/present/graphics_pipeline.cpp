@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/graphics_pipeline.h"
+#include "gpu/present/graphics_pipeline.h"
 
 #include "gpu/error.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The text of a lecture-form file as the front end reads it: tokens with nesting depth, the names that it uses and
 // declares, positions, and errors. Any bytes are accepted.
-#ifndef QUINTET_PROGRAM_GSN_TEXT_H
-#define QUINTET_PROGRAM_GSN_TEXT_H
+#ifndef QUINTET_PROGRAM_LECTURE_TEXT_H
+#define QUINTET_PROGRAM_LECTURE_TEXT_H
 
 #include <cstddef>
 #include <set>

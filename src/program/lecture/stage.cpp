@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "program/gsn/stage.h"
+#include "program/lecture/stage.h"
 
 #include <fmt/format.h>
 

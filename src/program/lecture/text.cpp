@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "program/gsn/text.h"
+#include "program/lecture/text.h"
 
 #include <algorithm>
 #include <cctype>

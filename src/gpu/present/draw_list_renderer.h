@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws lists of textured triangles with alpha blending.
-#ifndef QUINTET_GPU_DRAW_LIST_RENDERER_H
-#define QUINTET_GPU_DRAW_LIST_RENDERER_H
+#ifndef QUINTET_GPU_PRESENT_DRAW_LIST_RENDERER_H
+#define QUINTET_GPU_PRESENT_DRAW_LIST_RENDERER_H
 
 #include <array>
 #include <cstddef>
@@ -13,10 +13,10 @@
 
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
-#include "gpu/draw_list.h"
-#include "gpu/graphics_pipeline.h"
 #include "gpu/image.h"
-#include "gpu/swapchain.h"
+#include "gpu/present/draw_list.h"
+#include "gpu/present/graphics_pipeline.h"
+#include "gpu/present/swapchain.h"
 
 namespace quintet::gpu {
 

@@ -3,8 +3,8 @@
 //
 // Depths are reversed: larger is nearer to the camera. They must change linearly over the image along a line, as 1/z
 // does for a perspective camera and -z for an orthographic one.
-#ifndef QUINTET_GPU_LINE_LIST_H
-#define QUINTET_GPU_LINE_LIST_H
+#ifndef QUINTET_GPU_PRESENT_LINE_LIST_H
+#define QUINTET_GPU_PRESENT_LINE_LIST_H
 
 #include <cstdint>
 #include <vector>

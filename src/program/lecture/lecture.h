@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The front end of the lecture form: one file, NAME.rt.glsl, with several main() functions that markers assign to stages,
 // as in the ray tracing node of the GSN Composer (docs/lecture-form.md). The result is a Program like any other.
-#ifndef QUINTET_PROGRAM_GSN_LECTURE_H
-#define QUINTET_PROGRAM_GSN_LECTURE_H
+#ifndef QUINTET_PROGRAM_LECTURE_LECTURE_H
+#define QUINTET_PROGRAM_LECTURE_LECTURE_H
 
 #include <map>
 #include <string>
