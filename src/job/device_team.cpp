@@ -1,44 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/device_team.h"
 
-#include <algorithm>
-#include <atomic>
-#include <cassert>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <future>
-#include <mutex>
-#include <thread>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "base/plural.h"
 #include "gpu/error.h"
-#include "render/film/adaptive_plan.h"
 #include "render/film/film_error.h"
-#include "render/tone_map/tone_map.h"
 
 namespace quintet::job {
 namespace {
-
-constexpr auto kProgressInterval = std::chrono::milliseconds(50);
-// The films are joined at least this often, so that a loss costs little, but for at most a fiftieth of the time.
-constexpr double kJoinSeconds = 60.0;
-constexpr double kJoinShare = 50.0;
-
-std::vector<render::FilmPlane> emptyPlanes(const program::Program& program) {
-  std::vector<render::FilmPlane> planes;
-  for (const program::Output& output : program.outputs) {
-    render::FilmPlane& plane = planes.emplace_back();
-    plane.name = output.name;
-    plane.pixel = output.pixel;
-    plane.kind = output.kind;
-    plane.color = program::holdsColor(output);
-  }
-  return planes;
-}
 
 // The film on the only device.
 class DeviceView : public FilmView {
@@ -59,418 +28,54 @@ class DeviceView : public FilmView {
   std::vector<render::FilmPlane> planes_;
 };
 
-}  // namespace
-
-// The film of several devices, joined when it is read.
-class DeviceTeam::JoinedView : public FilmView {
+// Its loss ends the job: the renderer throws DeviceLostError.
+class OneDevice : public DeviceTeam {
  public:
-  explicit JoinedView(DeviceTeam& team) : team_(team), planes_(emptyPlanes(team.first().program())) {}
+  explicit OneDevice(TeamMember member) : DeviceTeam({std::move(member)}) {}
 
-  const std::vector<render::FilmPlane>& planes() const override { return planes_; }
-  bool stores(std::size_t output) const override { return team_.first().film().stores(output); }
-  render::SampleCounts counts() const override { return team_.counts(); }
-  io::Image image(std::size_t output) const override {
-    io::Image image = render::planeImage(film(), output);
-    if (planes_[output].kind == program::OutputKind::display)
-      render::decodeDisplay(image, team_.first().settings().transparent);
-    return image;
+  std::vector<std::size_t> active() const override { return {0}; }
+  void drop(std::size_t /*index*/, const std::string& reason) override { throw DeviceLostError(reason); }
+  void change(const std::function<void(TeamMember&)>& apply) override { apply(members_.front()); }
+  const render::SampleCounts& counts() const override { return first().film().counts(); }
+  std::uint64_t batchesWithin(double /*seconds*/) const override { return 1; }
+  std::uint64_t roundBatches() const override { return 1; }
+  bool renderSamples(std::uint64_t count, const render::BatchProgress& progress) override {
+    return first().renderBatch(static_cast<std::uint32_t>(count), progress);
   }
-  render::FilmPlane plane(std::size_t output) const override { return film().planes.at(output); }
-  io::Image variance() const override { return render::varianceImage(film()); }
-  render::FilmState state() const override { return film(); }
-
- private:
-  const render::FilmState& film() const {
-    team_.join();
-    return *team_.joined_;
+  bool renderCells(const std::vector<std::uint32_t>& limits, double /*seconds*/,
+                   const render::BatchProgress& progress) override {
+    return first().renderCells(limits, progress);
   }
-
-  DeviceTeam& team_;
-  std::vector<render::FilmPlane> planes_;
-};
-
-// One thread per device takes pieces of the queue until none is left for it.
-class DeviceTeam::Crew {
- public:
-  Crew(std::vector<Worker*> workers, WorkQueue& queue) : workers_(std::move(workers)), queue_(queue) {}
-
-  // Returns false if `progress`, which is called by this thread, has canceled the work. Rethrows what a thread has thrown; a
-  // loss is no failure.
-  bool run(const std::function<bool(double pixelSamples)>& progress) {
-    std::vector<std::jthread> threads;
-    running_ = workers_.size();
-    try {
-      for (Worker* worker : workers_) threads.emplace_back([this, worker] { work(*worker); });
-      watch(progress);
-    } catch (...) {
-      canceled_ = true;
-      throw;  // after the threads have ended
-    }
-    threads.clear();
-    if (failure_) std::rethrow_exception(failure_);
-    return !canceled_;
-  }
-  double done() const { return done_; }  // pixel samples
-  const std::vector<std::pair<Worker*, std::string>>& losses() const { return losses_; }
-
- private:
-  void watch(const std::function<bool(double pixelSamples)>& progress) {
-    std::unique_lock lock(mutex_);
-    while (running_ > 0) {
-      changed_.wait_for(lock, kProgressInterval, [this] { return running_ == 0; });
-      const double done = done_;
-      if (!progress) continue;
-      lock.unlock();
-      if (!progress(done)) canceled_ = true;
-      lock.lock();
-    }
-  }
-
-  void work(Worker& worker) noexcept {
-    try {
-      while (!canceled_) {
-        const std::optional<WorkPiece> piece = nextPiece(worker);
-        if (!piece || !render(worker, *piece)) break;
-      }
-    } catch (const TimeoutError&) {  // the program may never end, so the other devices cannot help
-      fail();
-    } catch (const DeviceLostError& error) {
-      const std::lock_guard lock(mutex_);
-      losses_.emplace_back(&worker, error.what());
-      worker.lost = true;
-      for (const WorkPiece& piece : worker.uncollected) done_ -= piece.pixelSamples();
-      queue_.giveBack(worker.uncollected);
-      worker.uncollected.clear();
-    } catch (...) {
-      fail();
-    }
-    const std::lock_guard lock(mutex_);
-    --running_;
-    changed_.notify_all();
-  }
-
-  void fail() {
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::current_exception();
-    canceled_ = true;
-  }
-
-  std::optional<WorkPiece> nextPiece(Worker& worker) {
-    const std::lock_guard lock(mutex_);
-    double total = 0;
-    bool isFastest = true;
-    for (const Worker* other : workers_) {
-      if (other->lost) continue;
-      total += other->speed.value();
-      isFastest = isFastest && other->speed.value() <= worker.speed.value();
-    }
-    std::optional<WorkPiece> piece = queue_.take(worker.speed.value(), total, isFastest);
-    if (piece) worker.uncollected.push_back(*piece);
-    return piece;
-  }
-
-  bool render(Worker& worker, const WorkPiece& piece) {
-    render::Renderer& renderer = *worker.member.renderer;
-    const Stopwatch clock;
-    const render::Renderer::Part part{piece.batch->samples, piece.batch->tiles, piece.first, piece.count};
-    if (!renderer.renderPart(part, [this](double /*fraction*/) { return !canceled_; })) return false;
-    renderer.finish();
-    const std::lock_guard lock(mutex_);
-    worker.speed.add(piece.pixelSamples(), clock.seconds());
-    done_ += piece.pixelSamples();
-    return true;
-  }
-
-  const std::vector<Worker*> workers_;
-  WorkQueue& queue_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::atomic<bool> canceled_{false};
-  // With the lock.
-  std::size_t running_ = 0;
-  double done_ = 0;
-  std::exception_ptr failure_;
-  std::vector<std::pair<Worker*, std::string>> losses_;
-};
-
-DeviceTeam::DeviceTeam(std::vector<TeamMember> members) {
-  assert(!members.empty());
-  const std::size_t count = members.size();
-  for (TeamMember& member : members) {
-    std::string name =
-        fmt::format("device {} of {} ({})", members_.size() + 1, count, member.scene->context().info().name);
-    members_.push_back({std::move(member), std::move(name), false, {}, {}});
-  }
-}
-
-DeviceTeam::~DeviceTeam() = default;
-
-std::vector<const render::DeviceScene*> DeviceTeam::scenes() const {
-  std::vector<const render::DeviceScene*> scenes;
-  for (const Worker& worker : members_) scenes.push_back(worker.member.scene);
-  return scenes;
-}
-
-std::vector<std::pair<std::size_t, TeamMember>> DeviceTeam::members() {
-  std::vector<std::pair<std::size_t, TeamMember>> members;
-  for (const Worker* worker : workers())
-    members.emplace_back(static_cast<std::size_t>(worker - members_.data()), worker->member);
-  return members;
-}
-
-std::vector<DeviceTeam::Worker*> DeviceTeam::workers() {
-  std::vector<Worker*> workers;
-  for (Worker& worker : members_)
-    if (!worker.lost) workers.push_back(&worker);
-  if (workers.empty())
-    throw DeviceLostError(fmt::format("all {} devices were lost; the last one: {}", members_.size(), lastLoss_));
-  return workers;
-}
-
-void DeviceTeam::markLost(Worker& worker, const std::string& reason) {
-  worker.lost = true;
-  redo_.insert(redo_.end(), worker.uncollected.begin(), worker.uncollected.end());
-  worker.uncollected.clear();
-  lastLoss_ = reason;
-  const auto left =
-      static_cast<std::size_t>(std::ranges::count_if(members_, [](const Worker& other) { return !other.lost; }));
-  if (left > 0)
-    warnings_.push_back(fmt::format("{} was lost: {}; its samples are rendered again on {}", worker.name, reason,
-                                    counted(left, "other device")));
-}
-
-std::vector<std::string> DeviceTeam::takeWarnings() { return std::exchange(warnings_, {}); }
-
-void DeviceTeam::change(const std::function<void(TeamMember&)>& apply) {
-  if (!isShared()) return apply(members_.front().member);
-  const std::vector<Worker*> changed = workers();
-  std::vector<std::future<void>> changes;
-  for (Worker* worker : changed)
-    changes.push_back(std::async(std::launch::async, [&apply, worker] { apply(worker->member); }));
-  std::exception_ptr failure;
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    try {
-      changes[i].get();
-    } catch (const TimeoutError&) {
-      failure = std::current_exception();
-    } catch (const DeviceLostError& error) {
-      markLost(*changed[i], error.what());
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
-  static_cast<void>(workers());  // throws if none is left
-}
-
-const render::SampleCounts& DeviceTeam::counts() const { return isShared() ? counts_ : first().film().counts(); }
-
-double DeviceTeam::speed() const {
-  double sum = 0;
-  for (const Worker& worker : members_) sum += worker.lost ? 0.0 : worker.speed.value();
-  return sum;
-}
-
-std::uint64_t DeviceTeam::batchesWithin(double seconds) const {
-  if (!isShared()) return 1;
-  const double batch = static_cast<double>(region().width) * region().height * render::kBatchSamples;
-  return static_cast<std::uint64_t>(std::clamp(speed() * seconds / batch, 1.0, 1e6));
-}
-
-bool DeviceTeam::perform(WorkQueue& queue, const render::BatchProgress& progress, double total) {
-  double done = 0;
-  while (!queue.empty()) {
-    Crew crew(workers(), queue);
-    std::function<bool(double)> report;
-    if (progress) report = [&](double now) { return progress(std::clamp((done + now) / total, 0.0, 1.0)); };
-    const bool complete = crew.run(report);
-    for (const auto& [worker, reason] : crew.losses()) markLost(*worker, reason);
-    if (!complete) return false;
-    done += crew.done();
-  }
-  return true;
-}
-
-bool DeviceTeam::renderRound(std::vector<std::shared_ptr<const WorkBatch>> batches, render::SampleCounts after,
-                             const render::BatchProgress& progress) {
-  double total = 0;
-  for (const auto& batch : batches) total += batch->unitSamples * batch->units;
-  if (stale_) restart();
-  joinedAll_ = false;
-  roundBatches_ = batches.size();
-  WorkQueue queue(std::move(batches), std::exchange(redo_, {}));
-  bool complete = false;
-  try {
-    complete = perform(queue, progress, total);
-  } catch (...) {
-    discard();
-    throw;
-  }
-  if (!complete) {
-    discard();
-    return false;
-  }
-  counts_ = std::move(after);
-  if (sinceJoin_.seconds() > std::max(kJoinSeconds, kJoinShare * joinSeconds_)) join();
-  return true;
-}
-
-bool DeviceTeam::renderSamples(std::uint64_t count, const render::BatchProgress& progress) {
-  if (!isShared()) return first().renderBatch(static_cast<std::uint32_t>(count), progress);
-  const auto begin = static_cast<std::uint32_t>(nextBatch_ * render::kBatchSamples);
-  const render::SampleRange samples{begin, begin + static_cast<std::uint32_t>(count)};
-  std::vector<std::shared_ptr<const WorkBatch>> batches;
-  for (std::uint32_t first = begin; first < samples.end; first += render::kBatchSamples)
-    batches.push_back(std::make_shared<WorkBatch>(
-        WorkBatch::ofRows(region(), {first, std::min(first + render::kBatchSamples, samples.end)})));
-  render::SampleCounts after = counts_;
-  after.add(samples);
-  const std::uint64_t next = nextBatch_ + batches.size();
-  if (!renderRound(std::move(batches), std::move(after), progress)) return false;
-  nextBatch_ = next;
-  return true;
-}
-
-bool DeviceTeam::renderCells(const std::vector<std::uint32_t>& limits, double seconds,
-                             const render::BatchProgress& progress) {
-  if (!isShared()) return first().renderCells(limits, progress);
-  std::vector<std::shared_ptr<const WorkBatch>> batches;
-  render::SampleCounts after = counts_;
-  double work = 0;
-  do {
-    render::AdaptiveBatches next = render::nextAdaptiveBatches(region(), after, limits, first().needsOneBatch());
-    if (next.tiles.empty()) break;
-    auto batch = std::make_shared<WorkBatch>(WorkBatch::ofTiles(std::move(next.tiles)));
-    work += batch->unitSamples * batch->units;
-    batches.push_back(std::move(batch));
-    after.cellBatches = std::move(next.counts);
-  } while (work < speed() * seconds);
-  assert(!batches.empty());
-  return renderRound(std::move(batches), std::move(after), progress);
-}
-
-void DeviceTeam::join() {
-  if (!isShared() || (joinedAll_ && joined_)) return;
-  if (stale_) restart();
-  const Stopwatch clock;
-  while (!joinedAll_ || !joined_) {
-    if (!redo_.empty()) {
-      WorkQueue queue({}, std::exchange(redo_, {}));
-      perform(queue, {}, 0);
-    }
-    const std::vector<Worker*> active = workers();
-    std::vector<std::pair<Worker*, std::future<render::FilmState>>> films;
-    for (Worker* worker : active)
-      if (!worker->uncollected.empty() || (!joined_ && films.empty()))
-        films.emplace_back(worker,
-                           std::async(std::launch::async, [worker] { return worker->member.renderer->takeFilm(); }));
-    for (auto& [worker, film] : films) {
-      try {
-        render::FilmState state = film.get();
-        if (joined_)
-          render::addFilm(*joined_, state);
-        else
-          joined_ = std::make_shared<render::FilmState>(std::move(state));
-        worker->uncollected.clear();
-      } catch (const TimeoutError&) {
-        throw;
-      } catch (const DeviceLostError& error) {
-        markLost(*worker, error.what());
-      }
-    }
-    joinedAll_ = redo_.empty();
-  }
-  joined_->counts = counts_;
-  sinceJoin_ = Stopwatch();
-  joinSeconds_ = clock.seconds();
-}
-
-render::ErrorEstimate DeviceTeam::estimateError() {
-  if (!isShared()) {
+  void join() override {}
+  std::shared_ptr<FilmView> view() override { return std::make_shared<DeviceView>(first()); }
+  render::ErrorEstimate estimateError() override {
     first().finish();
     return first().film().estimateError();
   }
-  join();
-  return render::estimateError(*joined_);
+  render::RayCount rays() override { return first().rays(); }
+  std::vector<render::NotFinitePixels> notFinitePixels() override { return first().notFinitePixels(); }
+  std::uint64_t skippedTraces() override { return first().skippedTraces(); }
+  void finish() override { first().finish(); }
+  void restoreFilm(render::FilmState state) override { first().restoreFilm(state); }
+  void startAt(std::uint64_t batch) override { first().startAt(batch); }
+  void restart() override { first().restart(); }
+  std::vector<std::string> takeWarnings() override { return {}; }
+};
+
+}  // namespace
+
+std::vector<render::FilmPlane> emptyPlanes(const program::Program& program) {
+  std::vector<render::FilmPlane> planes;
+  for (const program::Output& output : program.outputs) {
+    render::FilmPlane& plane = planes.emplace_back();
+    plane.name = output.name;
+    plane.pixel = output.pixel;
+    plane.kind = output.kind;
+    plane.color = program::holdsColor(output);
+  }
+  return planes;
 }
 
-render::FilmState DeviceTeam::saveFilm() {
-  if (!isShared()) return first().saveFilm();
-  join();
-  return *joined_;
-}
-
-std::shared_ptr<FilmView> DeviceTeam::view() {
-  if (!isShared()) return std::make_shared<DeviceView>(first());
-  return std::make_shared<JoinedView>(*this);
-}
-
-render::RayCount DeviceTeam::rays() {
-  if (!isShared()) return first().rays();
-  if (joined_ && joinedAll_) return render::countRays(joined_->statistics, region());
-  std::mutex mutex;
-  render::RayCount sum;
-  if (joined_) sum = render::countRays(joined_->statistics, region());
-  change([&](TeamMember& member) {
-    const render::RayCount rays = member.renderer->rays();
-    const std::lock_guard lock(mutex);
-    sum.rays += rays.rays;
-    sum.droppedSamples += rays.droppedSamples;
-  });
-  return sum;
-}
-
-std::vector<render::NotFinitePixels> DeviceTeam::notFinitePixels() {
-  if (!isShared()) return first().notFinitePixels();
-  join();
-  return render::findNotFinite(*joined_);
-}
-
-std::uint64_t DeviceTeam::skippedTraces() {
-  if (!isShared()) return first().skippedTraces();
-  std::atomic<std::uint64_t> sum{0};
-  change([&](TeamMember& member) { sum += member.renderer->skippedTraces(); });
-  return sum;
-}
-
-double DeviceTeam::deviceSeconds() const {
-  double sum = 0;
-  for (const Worker& worker : members_) sum += worker.member.renderer->statistics().deviceSeconds;
-  return sum;
-}
-
-void DeviceTeam::finish() {
-  if (!isShared()) first().finish();  // several devices finish each piece
-}
-
-void DeviceTeam::restoreFilm(render::FilmState state) {
-  if (!isShared()) return first().restoreFilm(state);
-  restart();
-  counts_ = state.counts;
-  nextBatch_ =
-      counts_.ranges.empty() ? 0 : (counts_.ranges.back().end + render::kBatchSamples - 1) / render::kBatchSamples;
-  joined_ = std::make_shared<render::FilmState>(std::move(state));
-}
-
-void DeviceTeam::startAt(std::uint64_t batch) {
-  if (!isShared()) first().startAt(batch);
-  nextBatch_ = batch;
-}
-
-void DeviceTeam::discard() {
-  joined_.reset();
-  counts_ = {};
-  nextBatch_ = 0;
-  redo_.clear();
-  joinedAll_ = stale_ = true;
-  for (Worker& worker : members_) worker.uncollected.clear();
-}
-
-void DeviceTeam::restart() {
-  if (isShared()) discard();
-  change([](TeamMember& member) { member.renderer->restart(); });
-  stale_ = false;
-  sinceJoin_ = Stopwatch();
-}
+std::unique_ptr<DeviceTeam> teamOfOne(TeamMember member) { return std::make_unique<OneDevice>(std::move(member)); }
 
 }  // namespace quintet::job

@@ -31,7 +31,7 @@ RenderJob::RenderJob(const RenderJob& job, const TeamMember& member)
       job_(job.job_),
       scene_(std::make_shared<PreparedScene>(*job.scene_)),
       diagnostics_(job.diagnostics_),
-      team_(std::make_unique<DeviceTeam>(std::vector<TeamMember>{member})),
+      team_(teamOfOne(member)),
       provenance_(job.provenance_),
       linkedSeconds_(job.linkedSeconds_) {
   std::vector<std::shared_ptr<render::DeviceScene>> scenes = std::exchange(scene_->onFurther, {});
@@ -43,9 +43,9 @@ RenderJob::RenderJob(const RenderJob& job, const TeamMember& member)
 // A thread per device, each with a job of its own.
 class RenderJob::FrameCrew {
  public:
-  FrameCrew(const RenderJob& job, std::vector<std::pair<std::size_t, TeamMember>> members, const RenderLimits& limits,
-            Observer& observer)
-      : job_(job), limits_(limits), observer_(observer), members_(std::move(members)), running_(members_.size()) {}
+  // `devices`: indices of members of the team.
+  FrameCrew(const RenderJob& job, std::vector<std::size_t> devices, const RenderLimits& limits, Observer& observer)
+      : job_(job), limits_(limits), observer_(observer), devices_(std::move(devices)), running_(devices_.size()) {}
 
   // Renders the frames that are not rendered yet. Calls deliver(frame, result) for each in their order until it returns false.
   // Returns false if the observer abandons the frames. Losses are in losses() afterward; then frames can be missing.
@@ -55,7 +55,7 @@ class RenderJob::FrameCrew {
     std::vector<std::uint32_t> order(open_.begin(), open_.end());
     std::vector<std::jthread> threads;
     try {
-      for (const auto& member : members_) threads.emplace_back([this, &member] { work(member); });
+      for (const std::size_t device : devices_) threads.emplace_back([this, device] { work(device); });
       for (const std::uint32_t frame : order) {
         std::optional<RenderResult> result = wait(frame);
         if (!result || !deliver(frame, std::move(*result))) break;
@@ -122,7 +122,7 @@ class RenderJob::FrameCrew {
     std::unique_lock lock(mutex_);
     const auto mayStart = [&] {
       if (stop_ != StopRequest::none) return true;
-      return !open_.empty() && (done_.size() < kWaitingFrames * members_.size() || *open_.begin() == next_);
+      return !open_.empty() && (done_.size() < kWaitingFrames * devices_.size() || *open_.begin() == next_);
     };
     changed_.wait(lock, [&] { return mayStart() || (open_.empty() && atWork_ == 0) || failure_; });
     if (stop_ != StopRequest::none || failure_ || open_.empty()) return std::nullopt;
@@ -132,10 +132,10 @@ class RenderJob::FrameCrew {
     return frame;
   }
 
-  void work(const std::pair<std::size_t, TeamMember>& member) noexcept {
+  void work(std::size_t device) noexcept {
     std::optional<std::uint32_t> frame;
     try {
-      RenderJob job(job_, member.second);
+      RenderJob job(job_, job_.team_->members()[device]);
       while ((frame = take())) {
         FrameObserver observer(*this, *frame);
         RenderResult result = job.renderAnimationFrame(*frame, limits_, observer);
@@ -150,7 +150,7 @@ class RenderJob::FrameCrew {
       fail();
     } catch (const DeviceLostError& error) {
       const std::lock_guard lock(mutex_);
-      losses_.emplace_back(member.first, error.what());
+      losses_.emplace_back(device, error.what());
       if (frame) {
         open_.insert(*frame);
         --atWork_;
@@ -172,7 +172,7 @@ class RenderJob::FrameCrew {
   const RenderJob& job_;
   const RenderLimits& limits_;
   Observer& observer_;
-  const std::vector<std::pair<std::size_t, TeamMember>> members_;
+  const std::vector<std::size_t> devices_;
   std::atomic<StopRequest> stop_{StopRequest::none};
   bool abandoned_ = false;
   std::mutex mutex_;
@@ -201,7 +201,7 @@ RenderResult RenderJob::runFramesOnDevices(const RenderLimits& limits, Observer&
   FrameSequence sequence;
   bool proceed = true, complete = true;
   while (complete && proceed && !open.empty()) {
-    FrameCrew crew(*this, team_->members(), limits, observer);
+    FrameCrew crew(*this, team_->active(), limits, observer);
     complete = crew.run(open, [&](std::uint32_t frame, RenderResult result) {
       open.erase(frame);
       return proceed = addToSequence(sequence, frame, std::move(result), clock.seconds(), observer);

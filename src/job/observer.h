@@ -16,7 +16,6 @@
 
 namespace quintet::job {
 
-class FilmView;
 struct Provenance;
 struct RenderResult;
 
@@ -97,12 +96,6 @@ class Observer {
   // True asks for preview(): of the first batch of a film; of frames that are not written, one per second.
   virtual bool wantsPreviews() const { return false; }
   virtual void preview(const RenderResult& /*result*/) {}
-
-  // Asked after each batch, and after each frame of a program that accumulates. True asks for image() at once, which waits for
-  // the device: an observer should not ask often. Neither changes the film.
-  virtual bool wantsImage() const { return false; }
-  // The film so far, valid during the call.
-  virtual void image(const FilmView& /*film*/) {}
 
   virtual StopRequest stopRequested() { return StopRequest::none; }
   // Asked several times per second while a job is constructed, and while a render loads the scene again after an edit. True

@@ -14,7 +14,7 @@
 #include "job/instrumented_run.h"
 #include "job/resolve.h"
 #include "job/scene_source.h"
-#include "program/gsn/lecture.h"
+#include "program/lecture/lecture.h"
 #include "program/load.h"
 
 namespace quintet::job {

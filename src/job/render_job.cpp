@@ -24,6 +24,7 @@
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
 #include "job/scene_notes.h"
+#include "job/shared_devices.h"
 #include "program/heat.h"
 #include "render/scene/camera.h"
 #include "scene/animation/animated_bounds.h"
@@ -77,15 +78,14 @@ void describeDevices(const DeviceTeam& team, Provenance& p) {
   const auto add = [](std::vector<std::string>& texts, const std::string& text) {
     if (std::ranges::find(texts, text) == texts.end()) texts.push_back(text);
   };
-  const std::vector<const render::DeviceScene*> scenes = team.scenes();
-  for (const render::DeviceScene* scene : scenes) {
-    add(names, scene->context().info().name);
-    add(drivers, scene->context().info().driver);
+  for (const TeamMember& member : team.members()) {
+    add(names, member.scene->context().info().name);
+    add(drivers, member.scene->context().info().driver);
   }
   p.device = fmt::format("{}", fmt::join(names, kDeviceSeparator));
   p.driver = fmt::format("{}", fmt::join(drivers, kDeviceSeparator));
   p.deviceCount.reset();
-  if (scenes.size() > 1) p.deviceCount = scenes.size();
+  if (team.isShared()) p.deviceCount = team.members().size();
 }
 
 std::string lossText(std::size_t device, const Error& error) {
@@ -371,7 +371,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer, Pend
                              engine_.pipelineCache(scene_->devices.front()), PendingPipeline::Launch::none}});
     runnable.compiled.stages = draft->compiled().stages;
   }
-  team_ = std::make_unique<DeviceTeam>(makeMembers(std::move(runnable), settings, observer));
+  team_ = makeTeam(makeMembers(std::move(runnable), settings, observer));
   complete_ = std::move(complete);
   prints_ = std::move(prints);
   callsPrint_ = callsPrint;
@@ -477,7 +477,7 @@ void RenderJob::completeProgram(Observer& observer) {
   if (!complete_ || !team_) return;
   team_->finish();
   complete_->pipeline.ready();
-  team_ = std::make_unique<DeviceTeam>(makeMembers(complete_->program, rendererSettings(), observer));
+  team_ = makeTeam(makeMembers(complete_->program, rendererSettings(), observer));
   complete_.reset();
   ++linkCount_;
   frameOutdated_ = true;
@@ -556,7 +556,7 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   t.pipeline = statistics.pipelineSeconds;
   t.firstPixel = firstPixelSeconds_;
   t.render = seconds;
-  t.device = team_->deviceSeconds();
+  for (const TeamMember& member : team_->members()) t.device += member.renderer->statistics().deviceSeconds;
   t.stages.insert(t.stages.begin(), {"start", t.start});
   t.stages.insert(t.stages.end(), {{"topLevel", built.topLevelSeconds},
                                    {"compile", t.compile},
@@ -567,8 +567,8 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   m.peakHost = peakResidentBytes();
   for (std::size_t i = 0; i <= gpu::kPurposeCount; ++i)
     m.devicePeak.emplace_back(i < gpu::kPurposeCount ? gpu::purposeName(static_cast<gpu::Purpose>(i)) : "unused", 0);
-  for (const render::DeviceScene* scene : team_->scenes()) {
-    const gpu::DeviceMemory device = scene->context().memory();
+  for (const TeamMember& member : team_->members()) {
+    const gpu::DeviceMemory device = member.scene->context().memory();
     m.peakDevice += device.peak;
     for (std::size_t i = 0; i < gpu::kPurposeCount; ++i) m.devicePeak[i].second += device.atPeak[i];
     m.devicePeak.back().second += device.unusedAtPeak();
@@ -608,7 +608,7 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   if (std::exchange(started_, true)) return start_;
   beginFilm();
   if (checkpoint_) {
-    const render::FilmState empty = team_->saveFilm();
+    const render::FilmState empty = team_->view()->state();
     if (const std::optional<StoredFilm> film =
             checkpoint_->load(provenance_, empty, start_, limits, observer, request.load.maxMemory)) {
       team_->restoreFilm(film->file.film);
@@ -638,12 +638,6 @@ void RenderJob::flushPrints(Observer& observer) {
   numbers.accumulates = job_.accumulatesFrames();
   if (scene_->onDevice->animated()) numbers.frame = static_cast<std::uint32_t>(frame_);
   prints_->flush(observer, numbers);
-}
-
-void RenderJob::showImage(Observer& observer) const {
-  if (!observer.wantsImage()) return;
-  team_->finish();  // the observer can measure how long the film takes
-  observer.image(*team_->view());
 }
 
 template <class Function>
@@ -809,7 +803,6 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
                     checkpoint_ ? std::optional(checkpoint_->savedSamples()) : std::nullopt});
     flushPrints(observer);
-    showImage(observer);
     if ((outOfTime = timeIsUp(now))) break;
     if (observer.stopRequested() == StopRequest::finish) {
       interrupted = schedule.next(0.0);  // otherwise everything is rendered
@@ -873,7 +866,6 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     }
     observer.batch({nextFrame_, start_.seconds, std::nullopt});
     flushPrints(observer);
-    showImage(observer);
     const bool isComplete = count && nextFrame_ >= *count;
     const bool isLast = isComplete || timeIsUp();
     const bool interrupted = !isLast && observer.stopRequested() == StopRequest::finish;
@@ -940,7 +932,7 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
   RenderLimits limits;
   limits.adaptive = job_.request.limits.adaptive;
   const StartPoint first = firstSample();
-  const std::optional<StoredFilm> film = loadCheckpoint(request, provenance_, team_->saveFilm(), first,
+  const std::optional<StoredFilm> film = loadCheckpoint(request, provenance_, team_->view()->state(), first,
                                                         withinPart(limits), observer, job_.request.load.maxMemory);
   if (!film) return false;
   restart();

@@ -245,7 +245,6 @@ class RenderJob {
   void beginFilm();                                    // continues from firstSample()
   StartPoint startPoint(const RenderLimits& limits, Observer& observer);
   render::Region printableRegion(const render::RenderSettings& settings) const;
-  void showImage(Observer& observer) const;  // if the observer wants it
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
   RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
 

@@ -28,8 +28,6 @@ struct TestObserver : Observer {
   void frame(const RenderResult& result) override { frames.push_back(result.provenance.frame.value_or(1000)); }
   bool wantsPreviews() const override { return true; }
   void preview(const RenderResult& result) override { previews.push_back(result.provenance.samples); }
-  bool wantsImage() const override { return wantsImages; }
-  void image(const FilmView& film) override { images.push_back(film.image(0)); }
   void diagnostics(const std::vector<Diagnostic>& found) override {
     reported.insert(reported.end(), found.begin(), found.end());
   }
@@ -37,11 +35,9 @@ struct TestObserver : Observer {
 
   std::size_t finishAfter = 1000;
   StopRequest request = StopRequest::none;
-  bool wantsImages = false;
   std::vector<Progress> states;
   std::vector<BatchReport> batches;
   std::vector<std::uint64_t> frames, previews;
-  std::vector<io::Image> images;
   std::vector<Diagnostic> reported;
 };
 
@@ -86,17 +82,6 @@ TEST_F(RenderJobTest, ReportsTheRender) {
   EXPECT_THAT(observer_.previews, testing::ElementsAre(4u)) << "of the first batch";
   ASSERT_FALSE(observer_.states.empty());
   for (const Progress& state : observer_.states) EXPECT_LE(state.fraction(), 1.0);
-}
-
-TEST_F(RenderJobTest, ImagesOfBatchesDoNotChangeTheFilm) {
-  const RenderRequest request = makeRequest(12);
-  const auto job = makeJob(request);
-  observer_.wantsImages = true;
-  const RenderResult result = job->run(request.limits, observer_);
-  ASSERT_EQ(observer_.images.size(), 3u);
-  EXPECT_NE(observer_.images[0].data, observer_.images[2].data);
-  EXPECT_EQ(observer_.images[2].data, result.film->image(0).data);
-  EXPECT_TRUE(test::equalSums(result.film->plane(0).sums, reference(12)));
 }
 
 TEST_F(RenderJobTest, ASecondRunContinues) {
