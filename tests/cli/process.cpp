@@ -216,16 +216,10 @@ TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::f
   ::posix_spawn_file_actions_adddup2(&actions, child, STDERR_FILENO);
   ::posix_spawn_file_actions_addclose(&actions, child);
   ::posix_spawn_file_actions_addclose(&actions, output_);
-  Environment all{{"TERM", "xterm"}, {"TERM_PROGRAM", ""}, {"COLORTERM", ""},
-                  {"TMUX", ""},      {"WEZTERM_PANE", ""}, {"KITTY_WINDOW_ID", ""}};
+  Environment all{{"TERM", "xterm"}};
   all.insert(all.end(), environment.begin(), environment.end());
   process_ = spawn(commandOf(arguments, folder, ""), environmentWith(all), actions);
   ::close(child);
-}
-
-void TerminalRun::type(const std::string& text) {
-  if (::write(output_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error("cannot write to the terminal");
 }
 
 PipeRun::PipeRun(const std::vector<std::string>& arguments, const RunOptions& options, std::chrono::seconds limit) {

@@ -59,14 +59,12 @@ class LiveRun {
   std::size_t seen_ = 0;  // end of the last match of waitForNext
 };
 
-// Its standard error is a terminal. TERM is "xterm", and the other variables that describe terminals are empty, unless
-// `environment` has them.
+// Its standard error is a terminal. TERM is "xterm", unless `environment` has another value.
 class TerminalRun : public LiveRun {
  public:
   using Environment = std::vector<std::pair<std::string, std::string>>;
   TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
               unsigned short columns = 100, const Environment& environment = {});
-  void type(const std::string& text);  // input of the terminal
 };
 
 // Its standard error is a pipe, and nothing is a terminal. Standard output goes to a file, or nowhere. `limit`: for all

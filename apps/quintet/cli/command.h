@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of `quintet`. To add one, write commands/NAME.cpp and add a row to commands/command.cpp.
+// The commands of `quintet`. `scripts/new command NAME` adds one.
 #ifndef QUINTET_CLI_COMMAND_H
 #define QUINTET_CLI_COMMAND_H
 

@@ -32,9 +32,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kBarSeconds = 0.1;
 constexpr double kLineSeconds = 10.0;
-// Images of a preview appear at most twice a second, and take at most a fiftieth of the time.
-constexpr double kImageSeconds = 0.5;
-constexpr double kImageShare = 50.0;
 constexpr const char* kClearLine = "\r\x1b[K";
 
 bool isTerminal() { return ::isatty(STDERR_FILENO) == 1; }
@@ -104,15 +101,10 @@ void exitAfterHang(const program::Program* program, const Diagnostic& diagnostic
 }
 
 Console::Console(const ConsoleOptions& options)
-    : options_(options), terminal_(isTerminal()), color_(colorOnStandardError()), nextImage_(kImageSeconds) {
-  const PreviewChoice choice = choosePreview(options.preview);
-  if (choice.protocol) preview_.emplace(*choice.protocol);
-  if (!choice.problem.empty()) note(choice.problem);
-}
+    : options_(options), terminal_(isTerminal()), color_(colorOnStandardError()) {}
 
 void Console::show(const std::string& line) {
   printError(kClearLine + line);
-  bar_ = line;
   barVisible_ = true;
 }
 
@@ -124,33 +116,6 @@ void Console::clear() {
 void Console::clearLocked() {
   if (barVisible_) printError(kClearLine);
   barVisible_ = false;
-  if (preview_) printError(preview_->erase());
-}
-
-bool Console::wantsImage() const { return preview_ && clock_.seconds() >= nextImage_; }
-
-void Console::image(const job::FilmView& film) {
-  const double begin = clock_.seconds();
-  const io::Image image = displayImage(film);  // without the lock, because the device's warnings take it
-  const std::lock_guard lock(mutex_);
-  drawImage(image);
-  const double end = clock_.seconds();
-  nextImage_ = end + std::max(kImageSeconds, kImageShare * (end - begin));
-}
-
-void Console::finalImage(const job::FilmView& film) {
-  if (!preview_) return;
-  const io::Image image = displayImage(film);  // see image()
-  const std::lock_guard lock(mutex_);
-  drawImage(image);
-  preview_->keep();
-}
-
-void Console::drawImage(const io::Image& image) {
-  std::string text = kClearLine + preview_->draw(image);
-  if (barVisible_) text += bar_;
-  const ProtectedWrite protect;  // half an image would disturb what follows
-  printError(text);
 }
 
 void Console::setProgram(const program::Program* program) {

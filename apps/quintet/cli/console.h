@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "base/stopwatch.h"
-#include "cli/preview.h"
 #include "cli/signals.h"
 #include "job/observer.h"
 #include "program/description/program.h"
@@ -42,11 +41,10 @@ void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program:
 [[noreturn]] void exitAfterHang(const program::Program* program, const Diagnostic& diagnostic);
 
 struct ConsoleOptions {
-  bool quiet = false;           // neither progress nor notes
-  bool json = false;            // errors of programs also as JSON on standard output
-  bool jsonProgress = false;    // a line of JSON for each batch and warning, instead of progress
-  std::string preview = "off";  // previewNames()
-  bool collectPrints = false;   // the request asks for what the program prints
+  bool quiet = false;          // neither progress nor notes
+  bool json = false;           // errors of programs also as JSON on standard output
+  bool jsonProgress = false;   // a line of JSON for each batch and warning, instead of progress
+  bool collectPrints = false;  // the request asks for what the program prints
   // What the first Ctrl-C does, and the second one.
   std::string stopNote = "finishing the current batch; press Ctrl-C again to quit without an image";
 };
@@ -76,21 +74,14 @@ class Console : public job::Observer {
   void deviceHung(const Diagnostic& diagnostic) override;
   bool isFrameWritten(const job::Provenance& frame) override { return wasWritten && wasWritten(frame); }
   void frame(const job::RenderResult& result) override;
-  bool wantsImage() const override;
-  void image(const job::FilmView& film) override;
   bool wantsPreviews() const override { return static_cast<bool>(onPreview); }
   void preview(const job::RenderResult& result) override;
 
   std::function<void(const job::RenderResult&)> onFrame, onPreview;
   std::function<bool(const job::Provenance&)> wasWritten;  // the frame, by an earlier run
   std::function<bool()> isObsolete;                        // the render is obsolete
-  // With a preview: makes the image of a film, sRGB bytes with 3 channels. It may call warning().
-  std::function<io::Image(const job::FilmView&)> displayImage;
 
-  // Shows the image of a finished render, with a preview. It stays on the terminal.
-  void finalImage(const job::FilmView& film);
-
-  void clear();                               // removes the bar, and the image of an unfinished render
+  void clear();                               // removes the bar
   std::vector<std::string> warnings() const;  // so far
   void clearReport();                         // discards warnings and prints; before the next render of --watch
   // What the program printed since the last call, with a note about omitted lines. Unset unless collectPrints is set.
@@ -99,15 +90,12 @@ class Console : public job::Observer {
  private:
   void show(const std::string& line);
   void clearLocked();
-  void drawImage(const io::Image& image);
 
   const ConsoleOptions options_;
   const bool terminal_;
   const bool color_;
   mutable std::mutex mutex_;  // warnings come from the driver's threads
   bool barVisible_ = false;
-  std::string bar_;                 // as shown
-  std::optional<Preview> preview_;  // if there is one
   std::vector<std::string> warnings_;
   job::Printed prints_;  // since takePrints()
   const program::Program* program_ = nullptr;
@@ -115,7 +103,6 @@ class Console : public job::Observer {
   bool stopNoted_ = false;
   Stopwatch clock_;
   double lastProgress_ = 0;  // on clock_
-  double nextImage_ = 0;     // the same
 };
 
 }  // namespace quintet::cli

@@ -308,16 +308,8 @@ void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& optio
 
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   declareDevices(table, texts, options);
-  table.add(
-      "Run",
-      {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
-       {.names = "--preview",
-        .value = "PROTOCOL",
-        .help = "Show the image on the terminal during the render: kitty, sixel, blocks, off or auto (default: off; "
-                "without a value: auto)",
-        .target = &options.console.preview,
-        .withoutValue = "auto",
-        .candidates = {.names = previewNames()}}});
+  table.add("Run",
+            {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
 }
 
 void declareImageOptions(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
@@ -504,8 +496,6 @@ void convertRendering(const RenderTexts& texts, RenderOptions& options) {
 }
 
 void checkStandardStreams(const RenderOptions& options) {
-  if (options.console.jsonProgress && options.console.preview != "off")
-    throw UsageError("--json-progress and --preview both write to standard error");
   const std::filesystem::path& file = options.output.file;
   if (!output::isStandardOutput(file)) return;
   if (options.console.json)

@@ -80,7 +80,7 @@ void declareProgram(OptionTable& table, RenderOptions& options);     // paramete
 inline constexpr const char* kLaunchLimitHelp =
     "Time limit of one launch, without compilation (default: 60; on a CPU 120)";
 void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options);
-// Device, messages and preview.
+// Device and messages.
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 // The part of declareProcess() that decides which devices render: also a list of them.
 void declareDevices(OptionTable& table, RenderTexts& texts, RenderOptions& options);

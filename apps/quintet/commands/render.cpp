@@ -83,7 +83,6 @@ OptionTable declareRender(RenderCommand& command) {
       {"quintet render scene.glb --program ao --set distance=0.5", "another program with a parameter"},
       {"quintet render --program pathtracer --help-program", "the program's parameters"},
       {"quintet render scene.glb -o - --quiet | display", "PNG on standard output"},
-      {"quintet render scene.glb --preview", "show the image on the terminal while it renders"},
       {"quintet render scene.glb --spp 4096 --checkpoint 60 --resume", "continue after an interruption"},
       {"quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm",
        "the first half of a render; 8-15 is the second half"},
@@ -235,7 +234,6 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
   }
   Console console(options.console);
   console.setProgram(&program);
-  console.displayImage = [&](const job::FilmView& film) { return output::displayImage(plan, film); };
   try {
     const job::RenderRequest request = requestFor(options, plan);
     job::ResolvedJob resolved = job::resolve(request, program);
@@ -274,7 +272,6 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
           {*result.provenance.frame, filesOf(*result.provenance.frame), result.provenance.seconds - earlier});
     };
     job::RenderResult result = job.run(options.request.limits, console);
-    console.finalImage(*result.film);
     try {
       if (!options.request.overwriteFilm)
         output::checkFilmLoss(plan, result, options.request.load.maxMemory);  // the render can have stopped early

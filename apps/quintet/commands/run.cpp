@@ -143,7 +143,6 @@ class Watch {
                  .mixedDevices = options.mixedDevices}),
         live_(engine_, options.program, [this] { return resolve(); }) {
     console_.isObsolete = [this] { return live_.watcher().pending(); };
-    console_.displayImage = [this](const job::FilmView& film) { return output::displayImage(plan_, film); };
     console_.onPreview = console_.onFrame = [this](const job::RenderResult& result) { write(result); };
   }
 
@@ -209,7 +208,6 @@ class Watch {
     files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
-    console_.finalImage(*result.film);
     interrupted_ = result.interrupted;
     if (!live_.job()->resolved().request.frames.every) write(result);
     addWarnings(result, console_);

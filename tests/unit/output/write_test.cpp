@@ -94,7 +94,7 @@ TEST_F(WriteOutputs, PngWith16Bits) {
                   std::min(linear.pixel<float>(x, 0)[c] / linear.pixel<float>(x, 0)[3], 1.0f), 4e-5f);
 }
 
-// The preview shows the same bytes as the file.
+// A window and a video show the same bytes as the file.
 TEST_F(WriteOutputs, DisplayImageIsThatOfThePng) {
   OutputRequest request{.file = folder_ / "a.png", .exposure = -1.5, .toneMap = render::ToneMap::aces};
   const OutputPlan plan = planOutputs(request, program::loadProgram("normals"));
