@@ -204,12 +204,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     options.project = &site_.project;
     options.idleSeconds = site_.options.idleSeconds;
     options.memoryHint = site_.options.memoryHint;
-    options.accepted = site_.sessions.size() < site_.options.defaults.maxSessions;
+    const bool accepted = site_.sessions.size() < site_.options.defaults.maxSessions;
+    options.accepted = accepted;
     auto key = std::make_shared<PageSession*>(nullptr);
     options.onEnd = [&site = site_, key] { site.sessions.erase(*key); };
     const auto session = std::make_shared<PageSession>(std::move(stream_), std::move(options));
     *key = session.get();
-    if (site_.sessions.size() < site_.options.defaults.maxSessions) site_.sessions.insert(session.get());
+    if (accepted) site_.sessions.insert(session.get());
     leaveSite();
     session->start(parser_->release());
   }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <future>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -144,6 +145,27 @@ TEST_F(LabServer, LimitsRequests) {
   EXPECT_EQ(get("/api/nothing").status, 404u);
   EXPECT_EQ(get("/missing.js").status, 404u);
   EXPECT_EQ(get("/api/files").status, 200u);  // it still works
+}
+
+// A page beyond the limit is closed with "try again later" (1013). A page that closes makes room for another one.
+TEST_F(LabServer, ClosesPagesBeyondItsSessions) {
+  const LabProcess server(folder_ / "project", {"--sessions", "1"});
+  PageClient first(server);
+  first.waitFor("worker");
+  EXPECT_EQ(PageClient(server).waitForClose(), 1013u);
+  first.close();
+  unsigned refused = 0;
+  for (; refused < 100; ++refused) {  // until the server has noticed the end of the first page
+    PageClient next(server);
+    try {
+      next.waitFor("worker");
+      break;
+    } catch (const std::runtime_error&) {
+      EXPECT_EQ(next.waitForClose(), 1013u);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  }
+  EXPECT_LT(refused, 100u);
 }
 
 TEST_F(LabServer, DescribesProgramsAndLessons) {

@@ -117,6 +117,17 @@ TEST(GltfAnimations, TheHashDependsOnTheAnimation) {
   EXPECT_EQ(hash(std::nullopt), scene::contentHash(without.loadAnimated(std::nullopt)).hex());
 }
 
+// Weights that no channel animates stay those of the node, or those of its mesh if it has none.
+TEST(GltfAnimations, KeepTheWeightsThatAreNotAnimated) {
+  AnimationBuilder builder = morphingTriangle();
+  builder.root.erase("animations");
+  builder.addChannel(0, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
+  const auto weights = [&] { return scene::poseAt(builder.loadAnimated().nodeAnimation.get(), 12).weights.at(0); };
+  EXPECT_THAT(weights(), ElementsAre(0.5f, 0.0f));
+  builder.root["nodes"][0]["weights"] = {0, 0.25};
+  EXPECT_THAT(weights(), ElementsAre(0.0f, 0.25f));
+}
+
 TEST(GltfAnimations, ReportChannelsThatCannotPlay) {
   AnimationBuilder builder = movingTriangle();
   builder.addChannel(1, "translation", {0, 1}, {0, 0, 0, 3, 0, 0});
