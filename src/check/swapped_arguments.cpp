@@ -18,7 +18,7 @@ namespace {
 
 using spv::Op;
 
-constexpr int kMaxDepth = 8;
+constexpr int kMaxSteps = 8;
 
 // The bits of which Vulkan allows at most one: VUID-RuntimeSpirv-OpTraceRayKHR-06892 to 06894.
 bool contradicts(std::uint32_t flags) {
@@ -35,7 +35,7 @@ bool mentions(const std::string& argument, std::string_view prefix) {
 
 const spirv::Instruction* original(const spirv::Module& module, spirv::Id value) {
   const spirv::Instruction* definition = module.definition(value);
-  for (int i = 0; definition && definition->op == Op::OpCopyObject && i < kMaxDepth; ++i)
+  for (int i = 0; definition && definition->op == Op::OpCopyObject && i < kMaxSteps; ++i)
     definition = module.definition(definition->at(0));
   return definition;
 }
@@ -43,7 +43,7 @@ const spirv::Instruction* original(const spirv::Module& module, spirv::Id value)
 // True for a unit vector: normalize(…) or reflect(…) of a ray direction.
 bool isDirection(const spirv::Module& module, spirv::Id value) {
   const spirv::Instruction* i = original(module, value);
-  for (int depth = 0; i && depth < kMaxDepth && spirv::isExtended(module, *i, GLSLstd450Reflect); ++depth)
+  for (int depth = 0; i && depth < kMaxSteps && spirv::isExtended(module, *i, GLSLstd450Reflect); ++depth)
     i = original(module, i->at(2));
   return i && (spirv::isExtended(module, *i, GLSLstd450Normalize) ||
                spirv::loadsBuiltIn(module, *i, spv::BuiltIn::WorldRayDirectionKHR));
@@ -56,7 +56,7 @@ bool isPosition(const spirv::Module& module, spirv::Id value) {
     return step && step->op == Op::OpVectorTimesScalar && isDirection(module, step->at(0));
   };
   const spirv::Instruction* i = original(module, value);
-  for (int depth = 0; i && depth < kMaxDepth && i->op == Op::OpFAdd; ++depth) {
+  for (int depth = 0; i && depth < kMaxSteps && i->op == Op::OpFAdd; ++depth) {
     const std::size_t step = isStep(i->at(1)) ? 1 : 0;
     if (!isStep(i->at(step))) return false;
     i = original(module, i->at(1 - step));

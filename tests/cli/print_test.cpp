@@ -14,7 +14,7 @@ using testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kProgram = R"(struct RayPayloadType { vec3 color; };
+constexpr const char* kPrintingProgram = R"(struct RayPayloadType { vec3 color; };
 void main() { /**** RAY GENERATION SHADER ****/
   debugPrintfEXT("x = %d", gl_LaunchIDEXT.x);
   gsnSetPixel(vec4(1.0));
@@ -24,7 +24,7 @@ void main() { /**** MISS SHADER ****/ }
 
 class Print : public CliTest {
  protected:
-  Print() { write(folder_ / "demo.rt.glsl", kProgram); }
+  Print() { write(folder_ / "demo.rt.glsl", kPrintingProgram); }
   RunResult demo(std::vector<std::string> more) {
     std::vector<std::string> arguments{"run", "demo.rt.glsl", "--size", "8x4"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -83,7 +83,7 @@ TEST_F(Print, AnAbandonedRenderIsForgotten) {
                       folder_.path());
   ASSERT_TRUE(process.waitForNext("frame 1: x = 4"));
   ASSERT_TRUE(process.waitForNext(" left"));
-  std::string silent = kProgram;
+  std::string silent = kPrintingProgram;
   silent.erase(silent.find("  debugPrintfEXT"), silent.find("  gsnSetPixel") - silent.find("  debugPrintfEXT"));
   write(folder_ / "demo.rt.glsl", silent);
   ASSERT_TRUE(process.waitForNext("no shader calls debugPrintfEXT"));

@@ -12,7 +12,7 @@ using testing::AllOf;
 using ::testing::HasSubstr;
 
 // The shader writes its parameters to two outputs.
-constexpr const char* kToml = R"([program]
+constexpr const char* kRunToml = R"([program]
 description = "Two flat colors"
 ray_generation = "flat.rgen"
 [[ray]]
@@ -57,7 +57,7 @@ class Run : public CliTest {
  protected:
   Run() {
     std::filesystem::create_directory(folder_ / "flat");
-    write(folder_ / "flat" / "program.toml", kToml);
+    write(folder_ / "flat" / "program.toml", kRunToml);
     write(folder_ / "flat" / "flat.rgen", kRgen);
     write(folder_ / "flat" / "flat.rmiss", kMiss);
   }

@@ -17,9 +17,9 @@ using spirv::Id;
 using spv::Op;
 using Kind = SpaceTag::Kind;
 
-constexpr int kMaxRounds = 12;           // of propagate()
-constexpr int kMaxDepth = 48;            // of uses()
-constexpr std::size_t kMaxValues = 400;  // that uses() follows
+constexpr int kMaxRounds = 12;         // of propagate()
+constexpr int kMaxUseDepth = 48;       // of uses()
+constexpr std::size_t kMaxUses = 400;  // that uses() follows
 
 bool isExtended(const spirv::Module& module, const spirv::Instruction& i, std::initializer_list<unsigned> numbers) {
   return std::ranges::any_of(numbers, [&](unsigned number) { return spirv::isExtended(module, i, number); });
@@ -54,7 +54,7 @@ struct PipelineSpaces::Search {
 
   void push(Open next) {
     if (!seen.emplace(next.stage, next.id, next.inner).second) return;
-    if (next.depth > kMaxDepth || seen.size() > kMaxValues)
+    if (next.depth > kMaxUseDepth || seen.size() > kMaxUses)
       uses.truncated = true;
     else
       open.push_back(std::move(next));

@@ -20,14 +20,14 @@
 namespace quintet::check {
 namespace {
 
-using Json = nlohmann::json;
+using GroupsJson = nlohmann::json;
 
 constexpr std::size_t kMaxRecords = 1u << 16;
 constexpr std::uint32_t kMaxGeometries = 1u << 20;
 
 // A value of the file and its JSON pointer.
 struct Node {
-  const Json& json;
+  const GroupsJson& json;
   std::string pointer;
 };
 
@@ -35,7 +35,7 @@ class GroupsReader {
  public:
   explicit GroupsReader(const std::filesystem::path& file) : file_(file) {}
 
-  std::vector<DescribedPipeline> read(const Json& json) {
+  std::vector<DescribedPipeline> read(const GroupsJson& json) {
     const Node root{json, ""};
     requireObject(root);
     if (!json.contains("pipelines")) return {pipeline(root)};
@@ -69,11 +69,11 @@ class GroupsReader {
 
   static std::string_view kindOf(const Node& node) {
     switch (node.json.type()) {
-      case Json::value_t::null: return "null";
-      case Json::value_t::object: return "an object";
-      case Json::value_t::array: return "an array";
-      case Json::value_t::string: return "a string";
-      case Json::value_t::boolean: return "a boolean";
+      case GroupsJson::value_t::null: return "null";
+      case GroupsJson::value_t::object: return "an object";
+      case GroupsJson::value_t::array: return "an array";
+      case GroupsJson::value_t::string: return "a string";
+      case GroupsJson::value_t::boolean: return "a boolean";
       default: return "a number";
     }
   }
@@ -310,10 +310,10 @@ class GroupsReader {
 }  // namespace
 
 std::vector<DescribedPipeline> parseGroups(const std::filesystem::path& file, std::string_view text) {
-  Json json;
+  GroupsJson json;
   try {
-    json = parseJson<Json>(file, text, {.comments = true});
-  } catch (const Json::parse_error& error) {
+    json = parseJson<GroupsJson>(file, text, {.comments = true});
+  } catch (const GroupsJson::parse_error& error) {
     throw FileError(file, fmt::format("byte {}", error.byte), "this is not valid JSON");
   }
   return GroupsReader(file).read(json);

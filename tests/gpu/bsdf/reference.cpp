@@ -12,7 +12,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kDoublePi = std::numbers::pi;
 constexpr double kSmallestAlpha = 5e-4;  // narrower lobes are deltas
 
 // GGX widths along x and y.
@@ -28,7 +28,7 @@ double tangentSquared(double cosine) { return 1.0 / (cosine * cosine) - 1.0; }
 // Walter et al. 2007, eq. 33.
 double distribution(double cosine, double alpha) {
   const double q = alpha * alpha + tangentSquared(cosine);
-  return alpha * alpha / (kPi * std::pow(cosine, 4.0) * q * q);
+  return alpha * alpha / (kDoublePi * std::pow(cosine, 4.0) * q * q);
 }
 
 // Heitz 2014, eq. 72.
@@ -40,7 +40,7 @@ double lambda(double cosine, double alpha) {
 double distribution(const dvec3& m, const dvec2& widths) {
   const dvec2 slope = dvec2(m) / m.z / widths;
   const double q = 1.0 + glm::dot(slope, slope);
-  return 1.0 / (kPi * widths.x * widths.y * std::pow(m.z, 4.0) * q * q);
+  return 1.0 / (kDoublePi * widths.x * widths.y * std::pow(m.z, 4.0) * q * q);
 }
 double lambda(const dvec3& w, const dvec2& widths) {
   const dvec2 stretched = widths * dvec2(w) / w.z;
@@ -92,7 +92,7 @@ double sheenLambda(double cosine, double alpha) {
 // The "Charlie" distribution with its masking, without the cosine of wi.
 double charlie(const dvec3& wo, const dvec3& wi, double alpha) {
   const double sine = glm::length(glm::cross(glm::normalize(wo + wi), dvec3(0.0, 0.0, 1.0)));
-  const double distribution = (2.0 + 1.0 / alpha) / (2.0 * kPi) * std::pow(sine, 1.0 / alpha);
+  const double distribution = (2.0 + 1.0 / alpha) / (2.0 * kDoublePi) * std::pow(sine, 1.0 / alpha);
   return distribution / (4.0 * wo.z * wi.z * (1.0 + sheenLambda(wo.z, alpha) + sheenLambda(wi.z, alpha)));
 }
 
@@ -150,15 +150,15 @@ glm::dvec3 referenceFilm(const ReferenceFilm& film, double cosine, const glm::dv
     rest[k] = (1.0 - top) * (1.0 - top) * bottom / (1.0 - between);
     amplitude[k] = std::sqrt(between);
     result[k] += rest[k];
-    waves[0][k] = kPi + (baseIor < n ? kPi : 0.0);
+    waves[0][k] = kDoublePi + (baseIor < n ? kDoublePi : 0.0);
     waves[1][k] = 2.0 * waves[0][k];
   }
   const glm::dmat3 rgbFromXyz = glm::transpose(glm::dmat3(3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,
                                                           0.0415560, 0.0556434, -0.2040259, 1.0572252));
   for (int order = 1; order <= 2; ++order) {
-    const double phase = 2.0 * kPi * order * 2.0 * n * thickness * cosineInside * 1e-9;
+    const double phase = 2.0 * kDoublePi * order * 2.0 * n * thickness * cosineInside * 1e-9;
     const auto gaussian = [&](double height, double center, double variance, double shift) {
-      return height * std::sqrt(2.0 * kPi * variance) * std::cos(phase * center + shift) *
+      return height * std::sqrt(2.0 * kDoublePi * variance) * std::cos(phase * center + shift) *
              std::exp(-variance * phase * phase) / 1.0685e-7;
     };
     const dvec3& shift = waves[order - 1];
@@ -316,7 +316,8 @@ dvec2 ReferenceBsdf::anisotropicGlass(const BsdfCase& c, const dvec3& wo) const 
   dvec2 sum(0.0);
   for (const auto& [node, weight] : nodes)
     for (int sector = 0; sector < 8; ++sector) {
-      const double t = 0.5 + 0.5 * node, z = 1.0 - (1.0 - t * t) * (1.0 + axis.z), phi = kPi / 8.0 * (2 * sector + 1);
+      const double t = 0.5 + 0.5 * node, z = 1.0 - (1.0 - t * t) * (1.0 + axis.z),
+                   phi = kDoublePi / 8.0 * (2 * sector + 1);
       const double r = std::sqrt(1.0 - z * z);
       const dvec3 m = glm::normalize(stretch * (axis + dvec3(r * std::cos(phi), r * std::sin(phi), z)));
       const double cosine = glm::dot(wo, m), reflectance = fresnel(cosine, eta);
@@ -419,7 +420,7 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
       metalMultiple[k] = glm::mix(metalMultiple[k], multipleFactor(metalMean[k], mean.lost), filmWeight);
     }
   }
-  const double multipleShape = o.lost * i.lost / (kPi * mean.lost);
+  const double multipleShape = o.lost * i.lost / (kDoublePi * mean.lost);
   const auto passed = [&](const Layer& l, double extra) {
     const double low = largest(f0);
     return 1.0 - low * (1.0 - l.lost - l.schlick) - f90 * l.schlick - extra - largest(layerMultiple) * l.lost;
@@ -432,8 +433,8 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   const double underI = sheenAtI ? 1.0 - strength * std::min(sheenI.albedo, 1.0) : 1.0;
   const double translucent = c.diffuseTransmission;
   const dvec3 diffuseColor = wi.z > 0.0 ? (1.0 - translucent) * color : translucent * dvec3(c.diffuseTransmissionColor);
-  dvec3 diffuse = opaque * diffuseColor * (passed(o, extraO) * passed(i, extraI) / (kPi * passed(mean, extraMean))) *
-                  underO * underI;
+  dvec3 diffuse = opaque * diffuseColor *
+                  (passed(o, extraO) * passed(i, extraI) / (kDoublePi * passed(mean, extraMean))) * underO * underI;
   if (sheenAtO && sheenAtI) {
     const dvec3 products = sheenAverages(sheenAlpha, meanWidth(widths));
     const double low = largest(f0);

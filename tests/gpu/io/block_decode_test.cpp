@@ -21,8 +21,8 @@
 namespace quintet::io {
 namespace {
 
-constexpr std::uint32_t kSide = 256;  // pixels: 4096 blocks
-constexpr std::size_t kBlocks = std::size_t{kSide / 4} * (kSide / 4);
+constexpr std::uint32_t kBlockImageSide = 256;  // pixels: 4096 blocks
+constexpr std::size_t kBlocks = std::size_t{kBlockImageSide / 4} * (kBlockImageSide / 4);
 
 // An image in a compressed format, which gpu::Image does not support.
 class CompressedImage {
@@ -31,7 +31,7 @@ class CompressedImage {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = format;
-    info.extent = {kSide, kSide, 1};
+    info.extent = {kBlockImageSide, kBlockImageSide, 1};
     info.mipLevels = info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.tiling = VK_IMAGE_TILING_OPTIMAL;
@@ -63,7 +63,8 @@ class CompressedImage {
 std::vector<float> decodeOnDevice(VkFormat format, std::span<const std::byte> blocks) {
   gpu::Context& context = test::testContext();
   const CompressedImage from(context, format);
-  const gpu::Image to(context, {kSide, kSide, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT, "texels"});
+  const gpu::Image to(
+      context, {kBlockImageSide, kBlockImageSide, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT, "texels"});
   gpu::Buffer upload(context, {.size = blocks.size(), .memory = gpu::Memory::upload, .name = "blocks"});
   const gpu::Buffer texels(context, {.size = to.byteSize(), .memory = gpu::Memory::readback, .name = "texels"});
   upload.upload(blocks);
@@ -72,10 +73,10 @@ std::vector<float> decodeOnDevice(VkFormat format, std::span<const std::byte> bl
     constexpr auto kFrom = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, kTo = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     VkBufferImageCopy copy{};
     copy.imageSubresource = kLayer;
-    copy.imageExtent = {kSide, kSide, 1};
+    copy.imageExtent = {kBlockImageSide, kBlockImageSide, 1};
     VkImageBlit blit{};
     blit.srcSubresource = blit.dstSubresource = kLayer;
-    blit.srcOffsets[1] = blit.dstOffsets[1] = {kSide, kSide, 1};
+    blit.srcOffsets[1] = blit.dstOffsets[1] = {kBlockImageSide, kBlockImageSide, 1};
     commands.transition(from.handle(), VK_IMAGE_LAYOUT_UNDEFINED, kTo);
     context.vk().vkCmdCopyBufferToImage(commands.handle(), upload.handle(), from.handle(), kTo, 1, &copy);
     commands.transition(from.handle(), kTo, kFrom);
@@ -85,7 +86,7 @@ std::vector<float> decodeOnDevice(VkFormat format, std::span<const std::byte> bl
     commands.copy(to, texels);
     commands.toHost(gpu::Stage::transfer);
   });
-  return texels.downloadAs<float>(std::size_t{4} * kSide * kSide);
+  return texels.downloadAs<float>(std::size_t{4} * kBlockImageSide * kBlockImageSide);
 }
 
 struct Case {
@@ -146,11 +147,11 @@ TEST_P(BlockDecode, EqualsTheDevice) {
   const std::vector<std::byte> blocks = randomBlocks(c.block);
   const std::vector<float> expected = decodeOnDevice(c.format, blocks);
   // The samples as they are stored, without decoding sRGB.
-  const Image raw = decodeBlocks(c.block, blocks, kSide, kSide);
-  ASSERT_EQ(raw.width, kSide);
+  const Image raw = decodeBlocks(c.block, blocks, kBlockImageSide, kBlockImageSide);
+  ASSERT_EQ(raw.width, kBlockImageSide);
   std::size_t different = 0;
-  for (std::uint32_t y = 0; y < kSide; ++y)
-    for (std::uint32_t x = 0; x < kSide; ++x)
+  for (std::uint32_t y = 0; y < kBlockImageSide; ++y)
+    for (std::uint32_t x = 0; x < kBlockImageSide; ++x)
       for (std::uint32_t k = 0; k < raw.channels; ++k) {
         float value = 0.0f;
         switch (raw.type) {
@@ -158,12 +159,13 @@ TEST_P(BlockDecode, EqualsTheDevice) {
           case PixelType::u16: value = static_cast<float>(raw.pixel<std::uint16_t>(x, y)[k]) / 65535.0f; break;
           case PixelType::f32: value = raw.pixel<float>(x, y)[k]; break;
         }
-        const float wanted = expected[4 * (std::size_t{y} * kSide + x) + k];
+        const float wanted = expected[4 * (std::size_t{y} * kBlockImageSide + x) + k];
         if (std::abs(value - wanted) <= tolerance) continue;
         if (++different <= 5)
-          ADD_FAILURE() << "block " << (y / 4 * (kSide / 4) + x / 4) << ", texel " << x % 4 << ", " << y % 4
+          ADD_FAILURE() << "block " << (y / 4 * (kBlockImageSide / 4) + x / 4) << ", texel " << x % 4 << ", " << y % 4
                         << ", channel " << k << ": " << value << ", expected " << wanted << "; first byte "
-                        << std::to_integer<int>(blocks[(y / 4 * (kSide / 4) + x / 4) * bytesPerBlock(c.block)]);
+                        << std::to_integer<int>(
+                               blocks[(y / 4 * (kBlockImageSide / 4) + x / 4) * bytesPerBlock(c.block)]);
       }
   EXPECT_EQ(different, 0u);
 }

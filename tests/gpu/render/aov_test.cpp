@@ -15,13 +15,13 @@
 namespace quintet::test {
 namespace {
 
-struct Layers {
+struct AovLayers {
   program::Program program = program::loadProgram("pathtracer");
   std::map<std::string, io::Image> images;
   render::FilmState film;
 
-  Layers(render::DeviceScene& device, const scene::Camera& camera, ImageOptions options,
-         const std::vector<std::string>& outputs) {
+  AovLayers(render::DeviceScene& device, const scene::Camera& camera, ImageOptions options,
+            const std::vector<std::string>& outputs) {
     render::RenderSettings settings = settingsFor(camera, options);
     settings.outputs = outputs;
     render::Renderer renderer = makeRenderer(device, program, settings);
@@ -67,8 +67,8 @@ TEST(Aov, LightComponentsAddUpToTheImage) {
   options.height = 16;
   options.batches = 4;
   const program::Program program = program::loadProgram("pathtracer");
-  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program));
-  const Layers plain(device, scene.scene.cameras[0], options, {});
+  const AovLayers layers(device, scene.scene.cameras[0], options, optionalOutputs(program));
+  const AovLayers plain(device, scene.scene.cameras[0], options, {});
   const std::vector<std::string> parts{"emission",          "background",           "direct_diffuse",
                                        "direct_specular",   "direct_transmission",  "indirect_diffuse",
                                        "indirect_specular", "indirect_transmission"};
@@ -101,7 +101,7 @@ TEST(Aov, SortsLightByTheFirstScattering) {
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   ImageOptions options;
   options.batches = 1;
-  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  const AovLayers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   EXPECT_GT(layers.at("direct_diffuse", 4, 4)[0], 0.01f);
   EXPECT_EQ(layers.at("direct_diffuse", 4, 4)[0], layers.at("color", 4, 4)[0]);
   for (const char* other :
@@ -114,7 +114,7 @@ TEST(Aov, SortsLightByTheFirstScattering) {
   mirror.roughness = 0.0f;
   mirrored.add(quad({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}), mirror).camera(perspective({0, 1, 2}, {0, 1, 3}, 30.0f));
   render::DeviceScene second(testContext(), scene::Scene(mirrored.scene), mirrored.environment);
-  const Layers seen(second, mirrored.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  const AovLayers seen(second, mirrored.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   EXPECT_GT(seen.at("indirect_specular", 4, 6)[0], 0.001f);
   EXPECT_NEAR(seen.at("indirect_specular", 4, 6)[0], seen.at("color", 4, 6)[0], 1e-6);
 }
@@ -128,7 +128,7 @@ void expectOnly(const SceneBuilder& scene, const std::string& layer, double leas
   render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   ImageOptions options;
   options.batches = 2;
-  const Layers layers(device, scene.scene.cameras.at(0), options, kParts);
+  const AovLayers layers(device, scene.scene.cameras.at(0), options, kParts);
   for (const std::string& other : kParts) {
     double sum = 0, color = 0;
     for (const uvec2 p : {uvec2(3, 3), uvec2(4, 3), uvec2(3, 4), uvec2(4, 4)}) {
@@ -185,7 +185,7 @@ TEST(Aov, AveragesNormalsOfAPixel) {
   ImageOptions options;
   options.width = options.height = 16;
   options.batches = 4;
-  const Layers layers(device, scene.scene.cameras[0], options, {"normal"});
+  const AovLayers layers(device, scene.scene.cameras[0], options, {"normal"});
   for (const std::uint32_t y : {4u, 9u, 12u}) {
     const std::span<const float> n = layers.at("normal", 8, y);
     EXPECT_GT(n[0], 0.15f);
@@ -213,7 +213,7 @@ TEST(Aov, DescribesTheFirstSurface) {
   ImageOptions options;
   options.width = options.height = 16;
   options.batches = 2;
-  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  const AovLayers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   const auto where = [](std::uint32_t x, std::uint32_t y) {
     return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16);
   };
@@ -270,7 +270,7 @@ TEST(Aov, MeasuresMotionInPixels) {
   ImageOptions options;
   options.width = options.height = 16;
   options.batches = 1;
-  const Layers layers(device, scene.scene.cameras[0], options, {"motion"});
+  const AovLayers layers(device, scene.scene.cameras[0], options, {"motion"});
   EXPECT_NEAR(layers.at("motion", 9, 7)[0], 0.1 * 4, 1e-4);  // 4 pixels per meter
   EXPECT_NEAR(layers.at("motion", 9, 7)[1], 0.05 * 4, 1e-4);
   EXPECT_EQ(layers.at("motion", 0, 0)[0], 0.0f);

@@ -37,7 +37,7 @@ float irradiance(const vec3& p, const vec3& n, const std::vector<vec3>& polygon)
   return static_cast<float>(std::abs(glm::dot(sum, glm::dvec3(n))));
 }
 
-ImageOptions batches(std::uint32_t count) {
+ImageOptions batchesOf(std::uint32_t count) {
   ImageOptions options;
   options.batches = count;
   return options;
@@ -56,7 +56,7 @@ TEST_P(AreaLight, MatchesTheFormFactor) {
   SceneBuilder scene = plane();
   scene.add(quad(c.corner, c.a, c.b), emitter(radiance));
   const std::vector<vec3> polygon = {c.corner, c.corner + c.a, c.corner + c.a + c.b, c.corner + c.b};
-  expectPixels(renderImage(scene, batches(24)),
+  expectPixels(renderImage(scene, batchesOf(24)),
                [&](vec2 pixel) {
                  return kLitAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
                },
@@ -106,7 +106,7 @@ TEST_P(PunctualLight, MatchesItsFormula) {
   const scene::Light light = lampAt(GetParam());
   SceneBuilder scene = plane();
   scene.light(light);
-  ImageOptions options = batches(16);
+  ImageOptions options = batchesOf(16);
   options.width = options.height = 16;
   expectPixels(
       renderImage(scene, options), [&](vec2 pixel) { return reflected(light, pointOf(pixel, options.width)); },
@@ -133,20 +133,20 @@ TEST(PunctualLights, ShineInASingleChannel) {
       SceneBuilder scene = plane();
       scene.light(light);
       expectPixels(
-          renderImage(scene, batches(4)), [&](vec2 pixel) { return reflected(light, pointOf(pixel, 8)); }, kPunctual);
+          renderImage(scene, batchesOf(4)), [&](vec2 pixel) { return reflected(light, pointOf(pixel, 8)); }, kPunctual);
     }
     // Inside an emitting sphere that reflects one channel: the light is found by samples of the light and of directions.
     scene::Material m = lambert(0.5f * one);
     m.emissive = 0.125f * one;
     SceneBuilder scene;
     scene.add(sphere(vec3(0.0f), 1.0f, 2), m).camera(perspective(vec3(0.1f), vec3(1.0f), 90.0f));
-    ImageOptions options = batches(8);
+    ImageOptions options = batchesOf(8);
     options.set = {"bounces=2"};
     expectUniform(renderImage(scene, options), vec4(0.125f * 1.75f * one, 1.0f), {.error = 0.01});
     // A constant sky.
     SceneBuilder open = plane();
     open.sky(0.125f * one);
-    expectUniform(renderImage(open, batches(8)), vec4(0.125f * kLitAlbedo * one, 1.0f), {.error = 0.01});
+    expectUniform(renderImage(open, batchesOf(8)), vec4(0.125f * kLitAlbedo * one, 1.0f), {.error = 0.01});
   }
 }
 
@@ -155,7 +155,7 @@ TEST(PunctualLights, DoNotShineThroughSurfaces) {
   scene::Light lamp = lampAt(scene::LightType::point), sun = lampAt(scene::LightType::directional);
   lamp.position.y = -0.9f;
   sun.direction.y = 1.0f;
-  expectBlack(renderImage(plane().light(lamp).light(sun), batches(4)));
+  expectBlack(renderImage(plane().light(lamp).light(sun), batchesOf(4)));
 }
 
 TEST(PunctualLights, AddUpWithAreaLights) {
@@ -166,7 +166,7 @@ TEST(PunctualLights, AddUpWithAreaLights) {
   const vec3 corner(0.7f, 0.05f, -0.6f), a(0, 0.8f, 0), b(0.3f, 0, 1.2f), radiance(4.0f, 5.0f, 6.0f),
       sky(0.5f, 0.4f, 0.3f);
   scene.add(quad(corner, a, b), emitter(radiance)).sky(sky);
-  expectPixels(renderImage(scene, batches(512)),
+  expectPixels(renderImage(scene, batchesOf(512)),
                [&](vec2 pixel) {
                  const vec3 p = pointOf(pixel, 8);
                  vec3 sum = reflected(lights[0], p) + reflected(lights[1], p);
@@ -182,7 +182,7 @@ TEST(PunctualLights, CastShadows) {
   for (const float height : {0.5f, 0.8999f}) {
     SceneBuilder scene = plane();
     scene.light(lamp).add(quad({-9, height, 9}, {18, 0, 0}, {0, 0, -18}), lambert(vec3(0.0f)));
-    expectBlack(renderImage(scene, batches(4)));
+    expectBlack(renderImage(scene, batchesOf(4)));
   }
 }
 
@@ -211,7 +211,7 @@ TEST(BentNormals, LeakNoLight) {
       scene.scene.materials.insert(scene.scene.materials.end(), materials.begin(),
                                    materials.end());  // the same shaders for all materials
       scene.light(lamp).light(sun).camera(perspective({0.2f, 0.1f, 1.5f}, {0, 0, 0}, 60.0f));
-      expectBlack(renderImage(scene, batches(8)));
+      expectBlack(renderImage(scene, batchesOf(8)));
     }
   }
 }

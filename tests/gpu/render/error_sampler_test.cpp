@@ -20,7 +20,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::uint32_t kSide = 64, kPixels = kSide * kSide, kSamplerRuns = 60;
+constexpr std::uint32_t kSamplerSide = 64, kPixels = kSamplerSide * kSamplerSide, kSamplerRuns = 60;
 
 struct Job {
   std::uint32_t seed, planned, kind;
@@ -71,7 +71,7 @@ const std::string kIntegratePixel = R"(
 std::vector<PixelSums> draw(const std::vector<Job>& jobs, std::uint32_t first, std::uint32_t last) {
   const auto number = [](std::size_t n) { return std::to_string(n) + "u"; };
   const Defines defines = {
-      {"RUNS", number(jobs.size())}, {"SIDE", number(kSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
+      {"RUNS", number(jobs.size())}, {"SIDE", number(kSamplerSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
   return runCompute<PixelSums>(kIntegratePixel, jobs, jobs.size() * kPixels, {.defines = defines});
 }
 
@@ -84,7 +84,7 @@ ImageError errorOf(const std::vector<double>& exact, std::uint32_t batches,
   const double samples = double{render::kBatchSamples} * batches;
   const double mean = std::accumulate(exact.begin(), exact.end(), 0.0) / kPixels;
   render::FilmState film;
-  film.region = {0, 0, kSide, kSide};
+  film.region = {0, 0, kSamplerSide, kSamplerSide};
   film.planes = {{.name = "color",
                   .sums = std::vector<shared::FixedSum>(4 * kPixels),
                   .squares = std::vector<shared::FixedSum>(4 * kPixels)}};

@@ -17,7 +17,7 @@ constexpr std::size_t kScatterSamples = 200'000;
 const std::vector<float> kAnisotropies{-0.9f, -0.3f, 0.0f, 1e-4f, 0.5f, 0.95f};
 
 // The distribution of the cosine, integrated by hand: F(c) = (1-g²)/2g (1/sqrt(1+g²-2gc) - 1/(1+g)).
-double distribution(double cosine, double g) {
+double phaseDistribution(double cosine, double g) {
   if (std::abs(g) < 1e-2) return 0.5 * (1.0 + cosine) - 0.75 * g * (1.0 - cosine * cosine);  // first order in g
   return (1.0 - g * g) / (2.0 * g) * (1.0 / std::sqrt(1.0 + g * g - 2.0 * g * cosine) - 1.0 / (1.0 + g));
 }
@@ -41,14 +41,15 @@ TEST(PhaseFunction, SamplesFollowTheDistribution) {
                                                      std::vector<float>{g}, kScatterSamples);
     std::vector<double> observed(kBins, 0.0), expected(kBins, static_cast<double>(kScatterSamples) / kBins);
     for (const vec3& f : found) {
-      const double u = distribution(static_cast<double>(f.x), static_cast<double>(g));
+      const double u = phaseDistribution(static_cast<double>(f.x), static_cast<double>(g));
       ++observed[static_cast<std::size_t>(std::clamp(static_cast<int>(u * kBins), 0, kBins - 1))];
       EXPECT_NEAR(f.z, 1.0f, 1e-5f);
       // The density is the derivative of the distribution over 2π.
       const double c = std::clamp(static_cast<double>(f.x), -0.999, 0.999), h = 1e-4;
       if (std::abs(static_cast<double>(f.x)) < 0.999) {
         const double slope =
-            (distribution(c + h, static_cast<double>(g)) - distribution(c - h, static_cast<double>(g))) / (2 * h);
+            (phaseDistribution(c + h, static_cast<double>(g)) - phaseDistribution(c - h, static_cast<double>(g))) /
+            (2 * h);
         ASSERT_NEAR(static_cast<double>(f.y), slope / (2.0 * static_cast<double>(kPi)),
                     2e-3 * static_cast<double>(f.y) + 1e-5);
       }

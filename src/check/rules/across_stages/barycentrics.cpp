@@ -21,7 +21,7 @@ namespace {
 using spirv::Id;
 using spv::Op;
 
-constexpr int kMaxDepth = 64;
+constexpr int kMaxWeightDepth = 64;
 
 // constant + x * barycentric.x + y * barycentric.y
 struct Weight {
@@ -146,7 +146,7 @@ class Interpolations {
     const auto found = forms_.find(value);
     if (found != forms_.end()) return found->second;
     forms_[value] = {};  // for loops
-    if (depth_ > kMaxDepth) return forms_[value] = unknownForm();
+    if (depth_ > kMaxWeightDepth) return forms_[value] = unknownForm();
     ++depth_;
     Form form = evaluate(value);
     --depth_;

@@ -27,7 +27,7 @@ using spv::Op;
 
 constexpr double kSmallestExponent = 1.0 / 2.6, kLargestExponent = 1.0 / 1.8;
 constexpr double kSmallestDecoding = 2.0, kLargestDecoding = 2.6;
-constexpr std::size_t kMaxValues = 2000;
+constexpr std::size_t kMaxColorValues = 2000;
 
 // The arrays of textures of the library, in both forms of programs.
 bool isTextures(const std::string& name) { return name == "textures" || name == lectureName("Textures"); }
@@ -64,7 +64,7 @@ class ColorEncoding {
   void follow(std::size_t stage, Id value, const program::Output& output) {
     open_ = {{stage, value, {}}};
     seen_.clear();
-    while (!open_.empty() && seen_.size() < kMaxValues) {
+    while (!open_.empty() && seen_.size() < kMaxColorValues) {
       const Open next = open_.back();
       open_.pop_back();
       if (seen_.emplace(next.stage, next.id, next.path).second) visit(next, output);

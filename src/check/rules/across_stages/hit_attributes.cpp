@@ -17,15 +17,16 @@ using spv::StorageClass;
 
 // Adds the scalars of a type. Returns false if one of them is no float of 32 bits, or if there are more than two.
 bool countFloats(const spirv::Types& types, spirv::Id id, std::uint32_t& count, int depth = 0) {
-  using Kind = spirv::Type::Kind;
+  using SpirvKind = spirv::Type::Kind;
   const spirv::Type& type = types.get(id);
-  if (type.kind == Kind::floating && type.width == 32) return ++count <= 2;
+  if (type.kind == SpirvKind::floating && type.width == 32) return ++count <= 2;
   constexpr int kMaxNested = 4;
   if (depth > kMaxNested) return false;
-  const bool elements = (type.kind == Kind::vector || type.kind == Kind::array) && type.count > 0 && type.count <= 2;
+  const bool elements =
+      (type.kind == SpirvKind::vector || type.kind == SpirvKind::array) && type.count > 0 && type.count <= 2;
   for (std::uint32_t i = 0; elements && i < type.count; ++i)
     if (!countFloats(types, type.element, count, depth + 1)) return false;
-  if (type.kind != Kind::structure) return elements;
+  if (type.kind != SpirvKind::structure) return elements;
   return std::ranges::all_of(type.members,
                              [&](spirv::Id member) { return countFloats(types, member, count, depth + 1); });
 }

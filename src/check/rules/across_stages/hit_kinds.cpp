@@ -55,7 +55,7 @@ void checkTriangleKinds(const PipelineGraph& graph, const PipelineStage& stage, 
 }
 
 // In the lecture form, the library reports; the location is then the first report in the user's file.
-SourceLocation locationOf(const PipelineGraph& graph, const PipelineStage& stage, const SourceLocation& location) {
+SourceLocation hitLocation(const PipelineGraph& graph, const PipelineStage& stage, const SourceLocation& location) {
   if (graph.isOwnFile(location.file)) return location;
   const std::string file = graph.groups.path(graph.groups.descriptionFile);
   const std::string_view text = stage.facts->module().source(file);
@@ -72,7 +72,7 @@ void checkHitKinds(const CheckInput& input, Report& report) {
     for (const spirv::ReportFacts& hit : stage.facts->reports())
       if (const std::optional<std::uint32_t> kind = hit.hitKind.atLeast(kMaxHitKind + 1))
         report.add(
-            "Q608", locationOf(graph, stage, hit.location),
+            "Q608", hitLocation(graph, stage, hit.location),
             fmt::format("the hit kind of this report is {}{}, but the maximum is {}; Vulkan reserves larger ones "
                         "for triangles",
                         hit.hitKind.exact()             ? ""

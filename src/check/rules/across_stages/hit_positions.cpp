@@ -23,7 +23,7 @@ namespace {
 using spirv::Id;
 using spv::Op;
 
-constexpr int kMaxDepth = 12;
+constexpr int kMaxPositionDepth = 12;
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kOffset = 0.1;  // of a factor of t that only moves the position off the surface
 
@@ -64,7 +64,7 @@ class Lengths {
 
   bool differs(Id direction, int depth = 0) const {
     const spirv::Instruction* i = module_.definition(direction);
-    if (!i || depth > kMaxDepth) return false;
+    if (!i || depth > kMaxPositionDepth) return false;
     const auto operand = [&](std::size_t k) { return differs(i->at(k), depth + 1); };
     switch (i->op) {
       case Op::OpPhi:
@@ -131,7 +131,7 @@ class Lengths {
   }
 
   void addTerms(const spirv::Instruction& term, bool& plain, bool& scaled, int depth) const {
-    if ((term.op == Op::OpFAdd || term.op == Op::OpFSub) && depth < kMaxDepth) {
+    if ((term.op == Op::OpFAdd || term.op == Op::OpFSub) && depth < kMaxPositionDepth) {
       for (const std::size_t k : {0u, 1u})
         if (const spirv::Instruction* part = module_.definition(term.at(k))) addTerms(*part, plain, scaled, depth + 1);
     } else if (term.op == Op::OpVectorTimesScalar) {

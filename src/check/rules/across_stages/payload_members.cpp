@@ -581,11 +581,11 @@ class MemberRule {
   std::vector<RelatedLocation> relatedOf(const LeafGroup& group) const {
     const SourceLocation read = locationOf(*tracer_, tracer_->accesses()[group.read]);
     std::vector<RelatedLocation> result{relatedTo(graph_.location(graph_.stages[site_->stage], read), "read here")};
-    constexpr std::size_t kMaxRelated = 4;
+    constexpr std::size_t kMaxShaders = 4;
     for (const Edge& edge : site_->edges) {
       const bool ends = edge.role == Role::miss || edge.role == Role::closestHit;
       const spirv::SharedVariable* payload = received(edge);
-      if (ends && payload && result.size() < kMaxRelated && !writes(edge, group.leaves.front(), true))
+      if (ends && payload && result.size() < kMaxShaders && !writes(edge, group.leaves.front(), true))
         result.push_back(relatedTo(graph_.declarationOf(graph_.stages[edge.stage], *payload),
                                    fmt::format("not written by the {}", graph_.describe(edge))));
     }

@@ -18,7 +18,7 @@ namespace {
 using spirv::ValueRange;
 using spv::Op;
 
-constexpr std::uint32_t kMaskBits = 0xFF;
+constexpr std::uint32_t kInstanceMask = 0xFF;
 
 std::string numberText(double value) { return fmt::format("{:.6g}", value); }
 
@@ -41,14 +41,14 @@ class RayRule {
   // Q507
   void checkMask(const spirv::TraceFacts& trace) {
     const spirv::ArgumentValues& mask = trace.mask;
-    if (!mask.known || mask.values.back() > kMaskBits) return;  // Q505 reports larger masks
-    if (!mask.mayHave(kMaskBits)) {
+    if (!mask.known || mask.values.back() > kInstanceMask) return;  // Q505 reports larger masks
+    if (!mask.mayHave(kInstanceMask)) {
       report_.add("Q507", location_, "the cull mask of this trace is 0, so it hits no instance");
       return;
     }
     if (!input_.scene || input_.scene->instances.empty()) return;
     std::uint32_t all = 0;
-    for (const program::InstanceFacts& instance : input_.scene->instances) all |= instance.mask & kMaskBits;
+    for (const program::InstanceFacts& instance : input_.scene->instances) all |= instance.mask & kInstanceMask;
     if (mask.mayHave(all)) return;
     report_.add(
         "Q507", location_,
@@ -219,7 +219,7 @@ class RayRule {
     const auto& geometries = input_.scene->geometries;
     std::set<std::string> reasons;
     for (const program::InstanceFacts& instance : input_.scene->instances) {
-      if (!trace.mask.mayHave(instance.mask & kMaskBits)) continue;
+      if (!trace.mask.mayHave(instance.mask & kInstanceMask)) continue;
       for (std::uint32_t k = 0; k < instance.geometryCount && instance.firstGeometry + k < geometries.size(); ++k) {
         const program::GeometryFacts& geometry = geometries[instance.firstGeometry + k];
         const bool built = (geometry.opaque() && !instance.forceNoOpaque) || instance.forceOpaque;
@@ -284,7 +284,7 @@ class StrideRule {
       return;
     const auto& geometries = input_.scene->geometries;
     for (const program::InstanceFacts& instance : input_.scene->instances) {
-      if (!trace.mask.mayHave(instance.mask & kMaskBits)) continue;
+      if (!trace.mask.mayHave(instance.mask & kInstanceMask)) continue;
       for (std::uint32_t k = 1; k < instance.geometryCount && instance.firstGeometry + k < geometries.size(); ++k) {
         const std::size_t used = program::hitGroupFor(input_.program, geometries[instance.firstGeometry]);
         const std::size_t needed = program::hitGroupFor(input_.program, geometries[instance.firstGeometry + k]);

@@ -19,15 +19,15 @@ constexpr spirv::Id kMemory = 0;         // stands for all buffers and images am
 constexpr std::size_t kMaxSamples = 64;  // combinations of values with which a condition is evaluated
 
 // The last store to a leaf on a path through the shader.
-struct Store {
+struct StoredValue {
   std::size_t instruction = 0;
   spirv::ValuePart value;
 };
 
 // The paths through a shader that do not write the leaf.
 struct UnwrittenPath {
-  std::map<std::uint32_t, Store> stores;  // to other leaves, as far as known
-  Blocks branches;                        // that decide whether the shader takes it
+  std::map<std::uint32_t, StoredValue> stores;  // to other leaves, as far as known
+  Blocks branches;                              // that decide whether the shader takes it
 };
 
 class UnwrittenPaths {
@@ -54,7 +54,7 @@ class UnwrittenPaths {
         path.stores[leaf] = stores[0];
     std::vector<std::size_t> found = readsOn(path);
     for (const auto& [leaf, stores] : stores_)
-      for (const Store& store : stores)
+      for (const StoredValue& store : stores)
         if (found.empty() && !path.stores.contains(leaf))
           if (const auto other = through(path, leaf, store)) found = readsOn(*other);
     return found;
@@ -89,7 +89,7 @@ class UnwrittenPaths {
   }
 
   // Returns the paths among `path` on which the store is the last one to its leaf; nullopt if there may be none.
-  std::optional<UnwrittenPath> through(const UnwrittenPath& path, std::uint32_t leaf, const Store& store) const {
+  std::optional<UnwrittenPath> through(const UnwrittenPath& path, std::uint32_t leaf, const StoredValue& store) const {
     std::vector<std::size_t> others = shader_.writers(received_, leaf);
     std::erase(others, store.instruction);
     std::vector<std::size_t> kills = others;
@@ -261,7 +261,7 @@ class UnwrittenPaths {
   }
 
   // Values that a store writes: all of them, or the least and the largest one.
-  std::vector<double> samplesOf(const Store& store) const {
+  std::vector<double> samplesOf(const StoredValue& store) const {
     const spirv::Instruction* value = shader_.module().definition(store.value.id);
     if (value && shader_.module().stage() == spv::ExecutionModel::ClosestHitKHR &&
         spirv::loadsBuiltIn(shader_.module(), *value, spv::BuiltIn::RayTmaxKHR))
@@ -291,7 +291,7 @@ class UnwrittenPaths {
   const std::uint32_t leaf_;
   std::size_t start_ = 0, function_ = 0;                                   // of the shader's entry function
   std::vector<std::size_t> writers_;                                       // of the leaf in the shader
-  std::map<std::uint32_t, std::vector<Store>> stores_;                     // to other leaves
+  std::map<std::uint32_t, std::vector<StoredValue>> stores_;               // to other leaves
   mutable std::map<Id, std::optional<std::set<std::uint32_t>>> leavesOf_;  // cache, by condition
 };
 

@@ -35,7 +35,7 @@ struct RayDegree {
 };
 
 constexpr std::size_t kMaxDegrees = 6;
-constexpr int kMaxRounds = 24;            // of the fixed-point iteration
+constexpr int kMaxUnitRounds = 24;        // of the fixed-point iteration
 constexpr std::size_t kMaxBranches = 16;  // for alternatives()
 
 const RayDegree kUnknown{true, {}};
@@ -184,7 +184,7 @@ RayDegree RayDegrees::of(spirv::Id value) {
   const std::vector<std::size_t> order = slice(start);
   degrees_.clear();
   for (const std::size_t i : order) degrees_[module_.instructions()[i].result] = kConstant;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxUnitRounds; ++round) {
     bool changed = false;
     for (const std::size_t i : order) {
       const spirv::Instruction& instruction = module_.instructions()[i];

@@ -95,12 +95,12 @@ bool varies(const spirv::Module& module, std::size_t instruction, spirv::Id valu
 bool isDescriptorArray(const spirv::Module& module, spirv::Id pointer) {
   const spirv::Variable* variable = module.variable(pointer);
   if (!variable) return false;
-  using Kind = spirv::Type::Kind;
+  using SpirvKind = spirv::Type::Kind;
   using Storage = spv::StorageClass;
-  const Kind kind = module.types().get(variable->type).kind;
+  const SpirvKind kind = module.types().get(variable->type).kind;
   const bool descriptor = variable->storage == Storage::UniformConstant || variable->storage == Storage::Uniform ||
                           variable->storage == Storage::StorageBuffer;
-  return descriptor && (kind == Kind::array || kind == Kind::runtimeArray);
+  return descriptor && (kind == SpirvKind::array || kind == SpirvKind::runtimeArray);
 }
 
 // True if nonuniformEXT decorates the index, the pointer or the value that is loaded through it.

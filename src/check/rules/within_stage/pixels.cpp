@@ -22,8 +22,8 @@ using spirv::Id;
 using spirv::Path;
 using spv::Op;
 
-constexpr int kMaxDepth = 24;
-constexpr int kMaxValues = 500;  // that a search follows; it finds nothing if there are more
+constexpr int kMaxPixelDepth = 24;
+constexpr int kMaxPixelValues = 500;  // that a search follows; it finds nothing if there are more
 
 bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path,
               std::string_view structure, std::string_view member) {
@@ -42,7 +42,7 @@ std::optional<std::uint32_t> componentOf(const spirv::Module& module, const spir
 
 // The value before conversions to float and between signed and unsigned.
 spirv::ValuePart withoutConversions(const spirv::Module& module, spirv::ValuePart value) {
-  for (int depth = 0; depth < kMaxDepth; ++depth) {
+  for (int depth = 0; depth < kMaxPixelDepth; ++depth) {
     value = spirv::originOf(module, std::move(value));
     const spirv::Instruction* i = module.definition(value.id);
     if (!i || (i->op != Op::OpConvertUToF && i->op != Op::OpConvertSToF && i->op != Op::OpBitcast)) break;
@@ -64,7 +64,7 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
   const Id id = origin.id;
   const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
-  if (!i || depth > kMaxDepth || --budget < 0) return {};
+  if (!i || depth > kMaxPixelDepth || --budget < 0) return {};
   const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, {i->at(k), path}).id); };
   const auto partOf = [&](std::size_t k) { return spirv::originOf(module, {i->at(k), path}).path; };
   switch (i->op) {
@@ -106,7 +106,7 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
 }
 
 std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, const Path& path) {
-  int budget = kMaxValues;
+  int budget = kMaxPixelValues;
   const auto found = coordinateOf(module, value, path, budget);
   return budget >= 0 ? found : std::nullopt;
 }
@@ -120,7 +120,7 @@ std::optional<Linear> linearOf(const spirv::Module& module, Id value, Path given
                                int depth = 0) {
   const spirv::ValuePart part = spirv::originOf(module, {value, std::move(given)});
   const spirv::Instruction* i = module.definition(part.id);
-  if (!i || depth > kMaxDepth || --budget < 0) return {};
+  if (!i || depth > kMaxPixelDepth || --budget < 0) return {};
   if (const auto number = spirv::constantNumber(module, part))  // 1u - 2u is a constant of the type uint
     return Linear{0.0, 0.0, *number > 2147483647.0 ? *number - 4294967296.0 : *number};
   if (i->op == Op::OpBitcast) return linearOf(module, i->at(0), part.path, axis, budget, depth + 1);
@@ -138,7 +138,7 @@ std::optional<Linear> linearOf(const spirv::Module& module, Id value, Path given
 
 // Returns the text of a mirrored coordinate that is not `size - 1 - pixel`; empty for any other value.
 std::string mirroredOutside(const spirv::Module& module, const spirv::ValuePart& value, std::uint32_t axis) {
-  int budget = kMaxValues;
+  int budget = kMaxPixelValues;
   const auto linear = linearOf(module, value.id, value.path, axis, budget);
   if (budget < 0 || !linear || linear->coordinate != -1.0 || linear->size != 1.0 || linear->constant == -1.0) return {};
   const char* size = axis == 0 ? "width" : "height";
@@ -153,8 +153,8 @@ std::string mirroredOutside(const spirv::Module& module, const spirv::ValuePart&
 struct Parts {
   bool x = false, y = false;
   double factor = 1.0;
-  bool normalized = false;  // divided by the size of the image
-  int budget = kMaxValues;  // number of values that the search still follows
+  bool normalized = false;       // divided by the size of the image
+  int budget = kMaxPixelValues;  // number of values that the search still follows
 };
 
 // True for frame.width, frame.height and components of gl_LaunchSizeEXT, also as float.
@@ -172,7 +172,7 @@ void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id 
   const Id id = origin.id;
   const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
-  if (!i || depth > kMaxDepth || --parts.budget < 0) return;
+  if (!i || depth > kMaxPixelDepth || --parts.budget < 0) return;
   const auto follow = [&](std::size_t k, double by = 1.0, int deeper = 1) {
     addParts(module, ranges, i->at(k), path, parts, factor * by, depth + deeper);
   };
@@ -243,7 +243,7 @@ struct Target {
 // The target of an index y * filmWidth + x. In outputIndex(), it is one of two values; the other one is for tiles.
 std::optional<Target> targetOfIndex(const spirv::Module& module, Id index, int depth = 0) {
   const spirv::Instruction* i = module.definition(spirv::originOf(module, {index}).id);
-  if (!i || depth > kMaxDepth) return {};
+  if (!i || depth > kMaxPixelDepth) return {};
   if (i->op == Op::OpPhi || i->op == Op::OpSelect) {
     const bool phi = i->op == Op::OpPhi;
     for (std::size_t k = phi ? 0 : 1; k < i->operands.size(); k += phi ? 2 : 1)
