@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shortcuts for frequent commands; 'make help' lists them. CMake does the actual build.
 #
-# Variables: PRESET       release, debug or asan (CMakePresets.json)
+# Variables: PRESET       release or debug (CMakePresets.json)
+#            SANITIZER    asan (default) or tsan, for `make sanitize`
 #            CMAKE_FLAGS  additional options of the CMake configuration, such as -DQUINTET_WERROR=ON
 #            CTEST_FLAGS  additional options of CTest, such as '-R scene'
 #            SUITES       tests that `make test` runs: short (default), long or all
@@ -11,6 +12,7 @@ PRESET      ?= release
 CMAKE_FLAGS ?=
 CTEST_FLAGS ?=
 SUITES      ?= short
+SANITIZER   ?= asan
 JOBS        ?= $(shell nproc 2>/dev/null || echo 2)
 
 BUILD := build/$(PRESET)
@@ -28,7 +30,7 @@ FUZZ_FLAGS ?=
 LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference mutation sanitize fuzz docs lint tidy clean help configure
+.PHONY: demo test check-fast build setup bench lessons reference mutation sanitize fuzz docs lint tidy clean help configure
 # Targets run one by one; each of them is parallel.
 .NOTPARALLEL:
 
@@ -51,6 +53,9 @@ $(if $(SUITE_FLAGS_$(SUITES)),,$(error SUITES is '$(SUITES)' instead of short, l
 
 test: build ## Install packages, build and run the tests (SUITES)
 	@ctest --preset $(PRESET) --output-on-failure --no-tests=error -j $(JOBS) $(SUITE_FLAGS_$(SUITES)) $(CTEST_FLAGS)
+
+check-fast: ## Check style and layers, and run the unit tests of the layers that differ from HEAD
+	@bash scripts/check_fast.sh
 
 build: configure ## Install packages and build
 	@cmake --build --preset $(PRESET) -j $(JOBS)
@@ -75,11 +80,19 @@ reference: build ## Compare with the reference images, and run the tests of ../s
 mutation: build ## Insert bugs one by one and check that the tests detect them (tests/mutation/run)
 	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
 
-# The window tests find leaks, too. They are missing if the window is not built.
-sanitize: setup ## Build with ASan and UBSan, and run the unit tests and the tests of the window (build/asan)
-	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
-	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests quintet_all_window_tests
-	@ctest --preset asan -L '^(unit|window)$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+# Errors of memory, undefined behavior and leaks: all unit tests and the window, which is missing if it is not built.
+SANITIZE_TARGETS_asan := quintet_unit_tests quintet_all_window_tests
+SANITIZE_TESTS_asan   := -LE '^nightly$$' -L '^(unit|window)$$'
+# Data races: the unit tests and whatever runs in several threads, which are sessions, several devices, the lab and the layer.
+SANITIZE_TARGETS_tsan := quintet_unit_tests quintet_gpu_tests quintet_api_tests quintet_lab_tests quintet_layer_tests \
+                         quintet_layer_parts_tests
+SANITIZE_TESTS_tsan   := -LE '^nightly$$' -R '^((unit|api|lab|layer)\.|gpu\.(Session|.*Job|ProgramDraft|EarlyPipelines|SampleSearch))'
+$(if $(SANITIZE_TARGETS_$(SANITIZER)),,$(error SANITIZER is '$(SANITIZER)' instead of asan or tsan))
+
+sanitize: setup ## Build with ASan and UBSan, and run the unit tests and the window; SANITIZER=tsan finds data races
+	@cmake --preset $(SANITIZER) -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
+	@cmake --build --preset $(SANITIZER) -j $(JOBS) --target $(SANITIZE_TARGETS_$(SANITIZER))
+	@ctest --preset $(SANITIZER) $(SANITIZE_TESTS_$(SANITIZER)) --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
 
 fuzz: ## Install Clang, and run the readers of all file formats with random inputs (FUZZ_FLAGS, build/fuzz)
 	@bash scripts/setup.sh build fuzz
@@ -103,4 +116,4 @@ clean: ## Remove all build results
 	@rm -rf build
 
 help: ## List all targets
-	@sed -n 's/^\([a-z]*\):.* ## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+	@sed -n 's/^\([a-z-]*\):.* ## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20

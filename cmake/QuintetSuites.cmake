@@ -4,7 +4,7 @@
 #
 # Adds one CTest entry LABEL.SUITE per GoogleTest suite of TARGET: the tests of a suite share the device, its compiled
 # shaders, and the tables of the GLSL compiler. Suites are found by the TEST macros of the sources; CMake runs again if a
-# source changes.
+# source changes. A suite below the folder scene/ also has the label layer-scene (scripts/check_fast.sh).
 #
 # Suites share the device. On a CPU they spend most of their time in the driver's compiler, which has one thread. On
 # machines with many cores each suite counts as several jobs, so that at most eight suites use the device at a time.
@@ -69,11 +69,17 @@ endfunction()
 # Adds the entries and sets OUT to their names.
 function(quintet_add_suite_tests OUT TARGET LABEL TIMEOUT)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  if(QUINTET_SANITIZE)
+    math(EXPR TIMEOUT "4 * ${TIMEOUT}")
+  endif()
   foreach(source IN LISTS ARGN)
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE layer)
+    string(REGEX REPLACE "/.*" "" layer ${layer})
     file(STRINGS ${source} lines REGEX "^(TYPED_)?TEST(_F|_P)?\\(")
     foreach(line IN LISTS lines)
       string(REGEX REPLACE "^[A-Z_]+\\( *([A-Za-z0-9_]+).*" "\\1" suite "${line}")
       list(APPEND suites ${suite})
+      list(APPEND layers_${suite} layer-${layer})
     endforeach()
   endforeach()
   list(REMOVE_DUPLICATES suites)
@@ -82,7 +88,8 @@ function(quintet_add_suite_tests OUT TARGET LABEL TIMEOUT)
     list(APPEND names ${name})
     quintet_suite_cost(cost ${name})
     add_test(NAME ${name} COMMAND ${TARGET} --gtest_filter=${suite}.*:*/${suite}.*:${suite}/*)
-    set_tests_properties(${name} PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT} COST ${cost})
+    list(REMOVE_DUPLICATES layers_${suite})
+    set_tests_properties(${name} PROPERTIES LABELS "${LABEL};${layers_${suite}}" TIMEOUT ${TIMEOUT} COST ${cost})
     if(name IN_LIST QUINTET_LONG_SUITES)
       set_property(TEST ${name} APPEND PROPERTY LABELS long)
     elseif(name IN_LIST QUINTET_NIGHTLY_SUITES)

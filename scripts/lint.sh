@@ -6,8 +6,9 @@
 #   lint.sh --cpp        checks only C++
 #   lint.sh --scripts    checks only the scripts
 #   lint.sh --tidy [FILE…]   runs clang-tidy 14 on the C++ sources (default: all; slow) with build/release
-#   lint.sh --changed [COMMIT]   checks the format, and runs clang-tidy on the sources that differ from COMMIT (default: HEAD),
-#                        and on one source for each header that differs
+#   lint.sh --files FILE…    checks only these; files that are neither C++ nor scripts do not count
+#   lint.sh --changed [COMMIT]   checks the files that differ from COMMIT (default: HEAD), and runs clang-tidy on the sources among
+#                        them and on one source for each header
 # Exit status: 1 for problems, 77 if no tool is installed. With CI=true a tool that apt can install must be installed.
 # The headers below shaders/, which C++ and GLSL share, are formatted by hand.
 set -uo pipefail
@@ -47,24 +48,28 @@ version14() {
   done
 }
 
+# checkCpp [--fix] [FILE…]: default: all.
 checkCpp() {
-  local tool sources
+  local tool fix=""
+  [ "${1-}" != --fix ] || { fix=--fix; shift; }
   tool=$(version14 clang-format)
-  mapfile -d '' sources < <(find apps examples include layer src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
+  (($#)) || { mapfile -d '' sources < <(find apps examples include layer src tests \( -name '*.cpp' -o -name '*.h' \) -print0); set -- "${sources[@]}"; }
   if [ -z "$tool" ]; then
     missing "C++ format" clang-format-14
-  elif [ "${1-}" = --fix ]; then
-    check "C++ formatted" "$tool" -i "${sources[@]}"
+  elif [ -n "$fix" ]; then
+    check "C++ formatted" "$tool" -i "$@"
   else
-    check "C++ format" "$tool" --dry-run -Werror "${sources[@]}"
+    check "C++ format" "$tool" --dry-run -Werror "$@"
   fi
 }
 
-# All files that begin like a shell script, so that a new script is checked at once.
+# checkScripts [FILE…]: those of the files (default: all) that begin like a shell script, so that a new script is checked at once.
 checkScripts() {
-  local scripts
-  mapfile -t scripts < <(find .ci scripts tests -type f -size -200k -exec \
+  local scripts=() all=(.ci scripts tests)
+  (($#)) || set -- "${all[@]}"
+  mapfile -t scripts < <(find "$@" -type f -size -200k -exec \
     awk 'FNR == 1 && /^#!.*[\/ ](ba)?sh$/ || FNR < 4 && /^# shellcheck shell=/ { print FILENAME } FNR > 3 { nextfile }' {} + | sort -u)
+  ((${#scripts[@]})) || return 0
   if command -v shellcheck >/dev/null; then
     check "scripts" shellcheck -x "${scripts[@]}"
   else
@@ -91,11 +96,25 @@ checkTidy() {
   fi
 }
 
+# changedFiles COMMIT: prints the files that differ from COMMIT. Files that git does not know yet count, too.
+changedFiles() {
+  git diff --name-only --diff-filter=d "$1"
+  git ls-files --others --exclude-standard
+}
+
+# checkFiles FILE…: the format of C++ and the scripts among the files.
+checkFiles() {
+  local cpp=()
+  mapfile -t cpp < <(printf '%s\n' "$@" | grep -E '^(apps|examples|include|layer|src|tests)/.*\.(cpp|h)$')
+  ((${#cpp[@]} == 0)) || checkCpp "${cpp[@]}"
+  (($# == 0)) || checkScripts "$@"
+}
+
 # changedSources COMMIT: prints the sources that differ from COMMIT, and for each header that differs its own source, or else the
-# first one that includes it. Files that git does not know yet count, too.
+# first one that includes it.
 changedSources() {
   local file
-  { git diff --name-only --diff-filter=d "$1" && git ls-files --others --exclude-standard; } | while read -r file; do
+  changedFiles "$1" | while read -r file; do
     case $file in
       apps/*.cpp | examples/*.cpp | layer/*.cpp | src/*.cpp) echo "$file" ;;
       apps/*.h | include/*.h | layer/*.h | src/*.h)
@@ -108,7 +127,8 @@ changedSources() {
 checkChanged() {
   local files
   git rev-parse --verify --quiet "$1^{commit}" >/dev/null || { echo "lint: no commit $1" >&2; exit 2; }
-  checkCpp
+  mapfile -t files < <(changedFiles "$1")
+  checkFiles "${files[@]}"
   mapfile -t files < <(changedSources "$1")
   if ((${#files[@]})); then checkTidy "${files[@]}"; else echo "lint: clang-tidy: no source has changed"; fi
 }
@@ -118,6 +138,7 @@ case ${1-} in
   --cpp) checkCpp ;;
   --scripts) checkScripts ;;
   --tidy) shift; checkTidy "$@" ;;
+  --files) shift; checkFiles "$@"; [ "$status" != 77 ] || status=0 ;;
   --changed) checkChanged "${2-HEAD}" ;;
   *) sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
