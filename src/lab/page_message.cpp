@@ -26,7 +26,7 @@ std::string takeId(Json& object) {
   const auto id = object.find("id");
   if (id == object.end()) return {};
   if (!id->is_number() && !id->is_string()) throw UsageError("'id' must be a number or a text");
-  const std::string text = id->dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = id->dump(-1, ' ', false, Json::error_handler_t::replace);
   object.erase(id);
   return text;
 }
