@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of a page as data (docs/design/lab-protocol.md, "Commands"): those of the lab, and those of sessions
+// The commands of a page as data: those of the lab, which lab_protocol.json describes, and those of sessions
 // (job/interactive/command_json.h).
 #ifndef QUINTET_LAB_PAGE_MESSAGE_H
 #define QUINTET_LAB_PAGE_MESSAGE_H
@@ -15,13 +15,11 @@
 
 #include "base/math.h"
 #include "job/interactive/command.h"
+#include "job/interactive/message_schema.h"
 
 namespace quintet::lab {
 
 inline constexpr std::size_t kMaxPageMessage = std::size_t{1} << 20;  // bytes
-inline constexpr std::uint32_t kMaxSide = 4096;                       // pixels, of the image
-inline constexpr std::uint32_t kMaxVideoFrames = 10000;
-inline constexpr double kMaxFrameRate = 240;  // frames per second
 
 // Replaces the session. What is unset has the default of the project.
 struct OpenSession {
@@ -67,7 +65,7 @@ struct InstrumentProgram {};  // a short render with run-time checks
 struct ExportExr {};          // the image as OpenEXR, 32-bit floats
 // A video of frames: of a program that counts them, of an animated scene, or of a turn of the camera.
 struct RenderVideo {
-  std::uint32_t frames = 1;  // up to kMaxVideoFrames
+  std::uint32_t frames = 1;
   double framesPerSecond = 24;
   std::string format = "mp4";  // extension: mp4, webm or gif
   bool turn = false;           // once around the scene
@@ -94,7 +92,10 @@ struct PageMessageError {
   std::string id;
 };
 
-// Checks types and ranges; names are checked by the worker.
+// The schema of sessions with the messages of the lab: all commands of a page, and all events of its session.
+const job::interactive::MessageSchema& labSchema();
+
+// The schema checks types and ranges; the worker checks names.
 std::variant<PageMessage, PageMessageError> parsePageMessage(std::string_view text);
 
 // The member "do" of an object; nothing if the text is no object with such a text.

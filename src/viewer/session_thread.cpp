@@ -358,11 +358,7 @@ void SessionThread::openSession(OpenRequest opened) {
 
 void SessionThread::runScript(const std::vector<std::string>& lines) {
   for (const std::string& line : lines)
-    guarded([&] {
-      interactive::JsonFields fields(line);
-      const std::string name = fields.text("do");
-      applyCommand(interactive::parseCommand(name, fields));
-    });
+    guarded([&] { applyCommand(interactive::parseCommand(interactive::sessionSchema().readCommand(line))); });
 }
 
 void SessionThread::waitForSave(const WaitForSaveRequest& request) {

@@ -24,6 +24,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include "lab/file_message.h"
+#include "lab/page_message.h"
 
 extern char** environ;  // NOLINT: POSIX
 
@@ -185,6 +186,7 @@ bool PageClient::receive(double seconds) {
     send({{"do", "received"}, {"image", header->number}});
   } else {
     event_ = Json::parse(message);
+    lab::labSchema().checkEvent(*event_);
     events_.push_back(*event_);
   }
   return true;

@@ -63,7 +63,8 @@ struct ReceivedImage {
   std::string file;
 };
 
-// A WebSocket. All functions throw std::runtime_error if nothing arrives within `seconds`.
+// A WebSocket. All functions throw std::runtime_error if nothing arrives within `seconds`, and UsageError for an event that
+// differs from its description (lab::labSchema()).
 class PageClient {
  public:
   explicit PageClient(const LabProcess& server, const Headers& headers = {});

@@ -174,7 +174,7 @@ class FakeSession {
   }
   saved() {
     if (!this.state) return;
-    this.event("reloaded", { files: [] });
+    this.event("reloaded", { files: "" });
     this.soon();
   }
   soon() {
@@ -194,7 +194,7 @@ class FakeSession {
       for (const [name, text] of Object.entries(command.files)) writeFileSync(path.join(where, name), text);
       command.program = path.basename(where);
     }
-    this.state = { program: command.program, parameters: {}, output: "", exposure: 0, tonemap: "default", width: command.width ?? 640, height: command.height ?? 360, samples: command.samples ?? 64, frame: 0, frames: false, still: false, paused: false, camera: { from: [0, 1, 4], at: [0, 0, 0], up: [0, 1, 0], fov: 45 }, canUndo: false, canRedo: false, prints: false };
+    this.state = { program: command.program, parameters: {}, output: "", exposure: 0, tonemap: "default", width: command.width ?? 640, height: command.height ?? 360, samples: command.samples ?? 64, frame: 0, frames: false, still: false, paused: false, camera: { from: [0, 1, 4], at: [0, 0, 0], up: [0, 1, 0], fov: 45 }, environment: { source: "", intensity: 1, rotation: 0, on: true }, canUndo: false, canRedo: false, prints: false };
     this.event("worker", { state: "started", message: "", restarts: 0 });
     this.event("stage", { text: "compiling" });
     const { stdout, stderr, failed } = await run(["run", this.target, "--help", "--json"]);
@@ -206,7 +206,7 @@ class FakeSession {
     this.state.frames = description.accumulation === "program";
     this.state.output = description.outputs[0].name;
     for (const parameter of description.parameters) this.state.parameters[parameter.name] = command.parameters?.[parameter.name] ?? parameter.default;
-    this.event("opened", { program: command.program, scene: "", device: "llvmpipe (fake server)", description, materials: [], lights: [], instances: [], cameras: [], animated: false, lastFrame: 0 });
+    this.event("opened", { program: command.program, scene: "", device: "llvmpipe (fake server)", description, materials: [], lights: [], instances: [], cameras: [], usesCamera: true, animated: false, lastFrame: 0 });
     this.event("state", this.state);
     this.event("done", {}, command.id);
     await this.render();
@@ -318,4 +318,4 @@ server.on("upgrade", (request, socket) => {
   socket.on("error", end);
 });
 
-server.listen(port, "127.0.0.1", () => console.log(`http://127.0.0.1:${port}/, files in ${folder}`));
+server.listen(port, "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/, files in ${folder}`));

@@ -22,7 +22,7 @@ await esbuild.build({
   platform: "node",
   target: "node18",
   logLevel: "warning",
-  define: { REPOSITORY: JSON.stringify(root) },
+  define: { REPOSITORY: JSON.stringify(root), WEB: JSON.stringify(web) },
   plugins: [
     {
       name: "library",

@@ -181,8 +181,9 @@ export class CameraControl {
   private queue(command: Command): void {
     const pending = this.pending;
     if (pending && pending.do === command.do && pending.do !== "zoom") {
-      for (const [name, value] of Object.entries(command)) if (typeof value === "number") pending[name] = Number(pending[name] ?? 0) + value;
-    } else if (pending && pending.do === "zoom" && command.do === "zoom") pending["factor"] = Number(pending["factor"]) * Number(command["factor"]);
+      const sums = pending as unknown as Record<string, unknown>;
+      for (const [name, value] of Object.entries(command)) if (typeof value === "number") sums[name] = Number(sums[name] ?? 0) + value;
+    } else if (pending && pending.do === "zoom" && command.do === "zoom") pending.factor = Number(pending.factor) * Number(command.factor);
     else {
       this.flush();
       this.pending = { ...command };

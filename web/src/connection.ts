@@ -28,7 +28,7 @@ export class Connection {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private nextId = 1;
   private closed = false;
-  private readonly pending = new Map<number, Pending>();
+  private readonly pending = new Map<number | string, Pending>();
   private files: Promise<unknown> = Promise.resolve(); // the last request of a file
   private part: { resolve: (part: FilePart) => void; reject: (error: Error) => void } | undefined; // that is awaited
 

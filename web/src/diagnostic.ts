@@ -1,24 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A problem of a program, in the format of `quintet check --json` (docs/cli.md).
+import type { Diagnostic } from "./protocol_messages";
 
-export interface RelatedLocation {
-  file: string;
-  line: number;
-  column: number;
-  text: string;
-}
-
-export interface Diagnostic {
-  severity: "error" | "warning" | "note";
-  file: string;
-  line: number; // from 1; 0: unknown
-  column: number; // from 1, in bytes of UTF-8; 0: unknown
-  id: string;
-  text: string;
-  related?: RelatedLocation[];
-  why?: string;
-  fix?: string;
-}
+export type { Diagnostic, RelatedLocation } from "./protocol_messages";
 
 // Whether the check's pages explain the diagnostic.
 export function hasPage(id: string): boolean {

@@ -22,7 +22,7 @@ export function factsText(state: SessionState, samples: number, statistics: Stat
   const parts = [state.frames ? `Frame ${Math.max(0, samples - 1)}` : `${samples} of ${state.samples} samples`];
   if (state.frames && statistics && statistics.seconds > 0) parts.push(`${Number((statistics.samples / statistics.seconds).toPrecision(2))} frames/s`);
   if (statistics && statistics.raysPerSecond > 0) parts.push(`${raysText(statistics.raysPerSecond)} rays/s`);
-  if (statistics && statistics.error !== null && !state.frames) parts.push(`error ≤ ${percentText(statistics.error)}`);
+  if (typeof statistics?.error === "number" && !state.frames) parts.push(`error ≤ ${percentText(statistics.error)}`);
   parts.push(`${state.width} × ${state.height}`);
   if (state.paused) parts.push("paused");
   return parts.join(" · ");

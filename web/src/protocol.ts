@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of docs/design/lab-protocol.md as types, and the header of its images.
-import type { Diagnostic } from "./diagnostic";
-import type { PipelineModel } from "./pipeline_model";
-import type { Explanation } from "./ray_tree";
+// The answers of docs/design/lab-protocol.md as types, the headers of its binary messages, and the messages of the WebSocket,
+// whose types build/check.mjs generates.
+import type { Commands, Common, Diagnostic, Events } from "./protocol_messages";
+
+export type * from "./protocol_messages";
 
 export interface Project {
   folder: string;
@@ -56,136 +57,17 @@ export interface Lesson {
   copied: boolean;
 }
 
-export interface ParameterDescription {
-  name: string;
-  type: "bool" | "int" | "uint" | "float" | "vec2" | "vec3" | "vec4" | "color" | "choice" | "image";
-  default: ParameterValue;
-  min: number | null;
-  max: number | null;
-  choices?: string[];
-  unit?: string;
-  help?: string;
-}
+export type CommandName = keyof Commands;
+export type Command = { [K in CommandName]: { do: K } & Common & Commands[K] }[CommandName];
 
-export type ParameterValue = number | boolean | string | number[];
+export type EventName = keyof Events;
+export type EventOf<K extends EventName> = { event: K } & Common & Events[K];
+export type ServerEvent = { [K in EventName]: EventOf<K> }[EventName];
 
-export interface OutputDescription {
-  name: string;
-  kind: string;
-  help?: string;
-}
-
-export interface Description {
-  name: string;
-  description: string;
-  accumulation: string;
-  parameters: ParameterDescription[];
-  outputs: OutputDescription[];
-}
-
-export interface Camera {
-  from: [number, number, number];
-  at: [number, number, number];
-  up: [number, number, number];
-  fov: number;
-}
-
-export interface SessionState {
-  program: string;
-  parameters: Record<string, ParameterValue>;
-  output: string;
-  exposure: number;
-  tonemap: string;
-  width: number;
-  height: number;
-  samples: number;
-  frame: number;
-  frames: boolean; // the program counts frames
-  still: boolean; // all of them are equal, so that one is rendered
-  paused: boolean;
-  camera: Camera | null;
-  canUndo: boolean;
-  canRedo: boolean;
-  prints: boolean;
-}
-
-export interface Opened {
-  program: string;
-  scene: string;
-  device: string;
-  description: Description;
-  materials: string[];
-  lights: string[];
-  instances: string[];
-  cameras: string[];
-  animated: boolean;
-  lastFrame: number;
-}
-
-export interface Statistics {
-  samples: number;
-  frames: boolean;
-  seconds: number;
-  raysPerSecond: number;
-  error: number | null;
-}
-
-export interface PrintedLine {
-  pixel: [number, number];
-  frame?: number;
-  sample?: number;
-  stage: string;
-  file: string;
-  line: number;
-  text: string;
-}
-
-export type WorkerState = "started" | "waiting" | "crashed" | "hung" | "idle";
-
-export interface Picked {
-  x: number;
-  y: number;
-  instance: string | null;
-  geometry?: number;
-  primitive?: number;
-  material?: string | null;
-  position?: number[];
-  normal?: number[];
-  geometricNormal?: number[];
-  front?: boolean;
-  distance?: number;
-}
-
-interface EventBodies {
-  worker: { state: WorkerState; message: string; restarts: number };
-  opening: { number: number };
-  stage: { text: string };
-  opened: Opened;
-  state: SessionState;
-  diagnostics: { diagnostics: Diagnostic[]; outdated?: boolean };
-  graph: { graph: PipelineModel | null };
-  image: { number: number; samples: number; width: number; height: number; factor: number; complete: boolean };
-  statistics: Statistics;
-  restarted: Record<never, never>;
-  reloaded: { files: string[] | string };
-  printed: { lines: PrintedLine[]; omitted: number };
-  picked: Picked;
-  value: { x: number; y: number; value: (number | string)[] };
-  progress: { done: number; total: number };
-  file: { file: number; name: string; type: string; size: number };
-  explained: { x: number; y: number; sample?: number; frame?: number; explanation: Explanation };
-  deviceReplaced: { device: string; message: string };
-  note: { message: string };
-  warning: { message: string };
-  error: { message: string };
-  done: Record<never, never>;
-}
-
-export type EventName = keyof EventBodies;
-export type ServerEvent = { [K in EventName]: { event: K; id?: number } & EventBodies[K] }[EventName];
-export type EventOf<K extends EventName> = Extract<ServerEvent, { event: K }>;
-
-export type Command = { do: string; [key: string]: unknown };
+export type SessionState = Events["state"];
+export type Opened = Events["opened"];
+export type Statistics = Events["statistics"];
+export type Picked = Events["picked"];
 
 export interface ImageMessage {
   number: number;

@@ -4,16 +4,9 @@
 import { Connection, type ConnectionState } from "./connection";
 import type { Diagnostic } from "./diagnostic";
 import type { PipelineModel } from "./pipeline_model";
-import type { Command, EventName, EventOf, ImageMessage, Opened, ParameterValue, PrintedLine, ServerEvent, SessionState, Statistics, WorkerState } from "./protocol";
+import type { Command, Commands, EventName, EventOf, ImageMessage, Opened, ParameterValue, PrintedLine, ServerEvent, SessionState, Statistics, WorkerState } from "./protocol";
 
-export interface OpenRequest {
-  program: string;
-  scene: string;
-  width: number;
-  height: number;
-  samples?: number;
-  [key: string]: unknown;
-}
+export type OpenRequest = Commands["open"] & { program: string; scene: string; width: number; height: number };
 
 export interface SessionHandlers {
   onStatus: () => void; // connection, worker, stage

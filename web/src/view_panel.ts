@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the image shows: scene, size, samples, exposure, tone map, camera, and the frame of an animated scene.
 import { h, replace, setOptions } from "./dom";
-import type { Command, Opened, SessionState } from "./protocol";
+import type { Command, Opened, SessionState, ToneMap } from "./protocol";
 
 export interface ViewHost {
   send: (command: Command) => void;
@@ -48,7 +48,7 @@ export class ViewPanel {
       host.send({ do: "size", width: width!, height: height! });
     });
     this.samples.addEventListener("change", () => host.send({ do: "samples", count: Number(this.samples.value) }));
-    this.tonemap.addEventListener("change", () => host.send({ do: "tonemap", name: this.tonemap.value }));
+    this.tonemap.addEventListener("change", () => host.send({ do: "tonemap", name: this.tonemap.value as ToneMap }));
     this.exposure.addEventListener("input", () => {
       this.exposureText.textContent = this.exposure.value;
       host.send({ do: "exposure", stops: this.exposure.valueAsNumber });

@@ -5,7 +5,7 @@ import { factsText, percentText, raysText } from "../src/image_bar";
 import type { SessionState } from "../src/protocol";
 
 const state = (changes: Partial<SessionState>): SessionState => ({
-  program: "p", parameters: {}, output: "color", exposure: 0, tonemap: "default", width: 640, height: 360, samples: 64, frame: 0, frames: false, still: false, paused: false, camera: null, canUndo: false, canRedo: false, prints: false,
+  program: "p", parameters: {}, output: "color", exposure: 0, tonemap: "default", width: 640, height: 360, samples: 64, frame: 0, frames: false, still: false, paused: false, camera: null, environment: { source: "", intensity: 1, rotation: 0, on: true }, canUndo: false, canRedo: false, prints: false,
   ...changes,
 });
 

@@ -39,7 +39,7 @@ test("commands without an equivalent belong into a terminal", () => {
 
 test("values have the types of the protocol, and other parameters their defaults", () => {
   assert.deepEqual(["12", "-0.5,1,2", "true", "wood.png", ""].map(valueOf), [12, [-0.5, 1, 2], true, "wood.png", ""]);
-  const parameter = (name: string, type: "bool" | "float", initial: number | boolean) => ({ name, type, default: initial, min: null, max: null });
+  const parameter = (name: string, type: "bool" | "float", initial: number | boolean) => ({ name, type, default: initial, min: null, max: null, unit: "", help: "" });
   assert.deepEqual(parameterValues([parameter("a", "float", 2), parameter("b", "bool", false), parameter("c", "float", 3)], { a: "4", b: "1" }), { a: 4, b: true, c: 3 });
 });
 

@@ -2,7 +2,7 @@
 // The session of the page against a socket that the test answers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { SessionState } from "../src/protocol";
+import type { EventOf, ServerEvent } from "../src/protocol";
 import { Session } from "../src/session";
 
 class FakeSocket {
@@ -19,13 +19,18 @@ class FakeSocket {
     this.sent.push(JSON.parse(text));
   }
   close(): void {}
-  receive(event: object): void {
+  receive(event: ServerEvent): void {
     this.onmessage!({ data: JSON.stringify(event) });
   }
 }
 Object.assign(globalThis, { WebSocket: FakeSocket, location: { protocol: "http:", host: "localhost" } });
 
-const kState = { event: "state", program: "mine", parameters: {}, frames: true, still: false, paused: false } as unknown as SessionState;
+const kState: EventOf<"state"> = {
+  event: "state", program: "mine", parameters: {}, output: "image", exposure: 0, tonemap: "default", width: 64, height: 36, samples: 64, frame: 0,
+  frames: true, still: false, paused: false, camera: null, environment: { source: "", intensity: 1, rotation: 0, on: true },
+  canUndo: false, canRedo: false, prints: false,
+};
+const kError = { severity: "error" as const, file: "mine/mine.rt.glsl", line: 3, column: 1, id: "GLSL", text: "syntax error" };
 
 function opened() {
   const ignore = () => undefined;
@@ -45,8 +50,8 @@ function opened() {
 
 for (const [name, event] of [
   ["runs", { event: "stage", text: "loading" }],
-  ["has errors", { event: "diagnostics", diagnostics: [{ severity: "error" }], outdated: false }],
-] as const)
+  ["has errors", { event: "diagnostics", diagnostics: [kError], outdated: false }],
+] satisfies [string, ServerEvent][])
   test(`after a program that took too long, the saved repair ${name}, and the session no longer waits`, () => {
     const { session, socket } = opened();
     socket.receive({ event: "worker", state: "hung", message: "a launch took longer than 3 s", restarts: 1 });

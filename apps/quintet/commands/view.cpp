@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -27,13 +28,9 @@
 namespace quintet::cli {
 namespace {
 
-using job::interactive::JsonFields;
 using job::interactive::Session;
 
 void printLine(const std::string& json) { writeFile("-", json + "\n"); }
-
-// The commands of a script that a session does not have.
-const std::vector<std::string> kScriptCommands{"refine", "step", "pick", "explain", "save", "quit"};
 
 class Script {
  public:
@@ -42,42 +39,32 @@ class Script {
 
   // Returns false if the line ends the script.
   bool execute(const std::string& line) {
-    JsonFields fields(line);
-    const std::string name = fields.text("do");
+    const nlohmann::json message = job::interactive::scriptSchema().readCommand(line);
+    const auto name = message.at("do").get<std::string>();
     if (name == "refine") {
-      const bool hasSamples = fields.has("samples");
-      const std::uint32_t samples = hasSamples ? fields.count("samples") : 0;
-      fields.rejectOthers();
-      if (hasSamples && samples != session_.state().samples) session_.apply(job::interactive::SetSamples{samples});
+      const std::uint32_t samples = message.value("samples", session_.state().samples);
+      if (samples != session_.state().samples) session_.apply(job::interactive::SetSamples{samples});
       report(session_.refine());
     } else if (name == "step") {
-      const double seconds = fields.number("seconds");
-      fields.rejectOthers();
-      report(session_.step(seconds));
+      report(session_.step(message.at("seconds").get<double>()));
     } else if (name == "pick") {
-      const uvec2 pixel(fields.index("x"), fields.index("y"));
-      fields.rejectOthers();
+      const uvec2 pixel = job::interactive::parsePixel(message);
       const std::optional<job::interactive::Pick> picked = session_.pick(pixel);
       printLine(job::interactive::pickedJson(pixel, picked, session_.instanceNames(), session_.materialNames()));
     } else if (name == "explain") {
-      const uvec2 pixel(fields.index("x"), fields.index("y"));
-      const std::uint32_t sample = fields.has("sample") ? fields.index("sample") : 0;
-      const std::string file = fields.findText("file").value_or("");
-      fields.rejectOthers();
+      const uvec2 pixel = job::interactive::parsePixel(message);
+      const auto sample = message.at("sample").get<std::uint32_t>();
+      const auto file = message.at("file").get<std::string>();
       explained_.reset();
       explained_ = Explained{session_.explain(pixel, sample), session_.camera(), session_.state().program};
       if (!file.empty()) writeFile(file, job::explanationJson(explained_->explanation));
       printLine(job::interactive::explainedJson(explained_->explanation, file));
     } else if (name == "save") {
-      const std::string file = fields.text("file");
-      const bool rays = fields.findFlag("rays").value_or(false);
-      fields.rejectOthers();
-      save(file, rays);
+      save(message.at("file").get<std::string>(), message.at("rays").get<bool>());
     } else if (name == "quit") {
-      fields.rejectOthers();
       return false;
     } else {
-      session_.apply(job::interactive::parseCommand(name, fields, kScriptCommands));
+      session_.apply(job::interactive::parseCommand(message));
     }
     return true;
   }

@@ -1,197 +1,185 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/interactive/command_json.h"
 
-#include <algorithm>
-#include <iterator>
-#include <string_view>
-#include <utility>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "base/embedded.h"
 #include "base/error.h"
-#include "base/suggestion.h"
 
-namespace quintet::job::interactive {
+namespace quintet {
+
+std::span<const EmbeddedFile> embeddedSessionProtocol();
+
+namespace job::interactive {
 namespace {
 
-Command parseZoom(JsonFields& fields) {
-  Zoom zoom{fields.real("factor", 1), {}};
-  const std::optional<double> x = fields.findNumber("x"), y = fields.findNumber("y");
-  if (x.has_value() != y.has_value()) throw UsageError("'x' and 'y' require each other");
-  if (x) zoom.pixel = vec2(*x, *y);
+using Message = nlohmann::json;
+
+vec3 toPoint(const Message& list) { return {list[0].get<float>(), list[1].get<float>(), list[2].get<float>()}; }
+
+template <class T>
+std::optional<T> findAt(const Message& message, const char* name) {
+  const auto found = message.find(name);
+  return found == message.end() ? std::nullopt : std::optional(found->get<T>());
+}
+
+std::string textAt(const Message& message, const char* name) { return message.at(name).get<std::string>(); }
+float realAt(const Message& message, const char* name) { return message.at(name).get<float>(); }
+
+uvec2 sizeOf(const Message& message) {
+  return {message.at("width").get<std::uint32_t>(), message.at("height").get<std::uint32_t>()};
+}
+
+Command parseZoom(const Message& message) {
+  Zoom zoom{realAt(message, "factor"), {}};
+  if (message.contains("x")) zoom.pixel = vec2(realAt(message, "x"), realAt(message, "y"));
   return zoom;
 }
 
-Command parseLook(JsonFields& fields) {
-  CameraRequest camera;
-  camera.lookFrom = fields.findPoint("from");
-  if (!camera.lookFrom) throw UsageError("'from' is missing");
-  camera.lookAt = fields.findPoint("at");
-  camera.up = fields.findPoint("up").value_or(camera.up);
-  return SetCamera{camera};
-}
+double toNumber(const Message& value) { return value.is_boolean() ? value.get<bool>() : value.get<double>(); }
 
-std::optional<float> findReal(JsonFields& fields, const char* name) {
-  const std::optional<double> value = fields.findNumber(name);
-  return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
-}
-
-Command parseLens(JsonFields& fields) {
-  SetLens lens;
-  lens.verticalFov = findReal(fields, "fov");
-  lens.apertureRadius = findReal(fields, "aperture");
-  lens.focusDistance = findReal(fields, "focus");
-  if (!lens.verticalFov && !lens.apertureRadius && !lens.focusDistance) {
-    fields.rejectOthers();  // a misspelled name explains more
-    throw UsageError("no value of the lens is given");
-  }
-  return lens;
-}
-
-// All members but the name of the object.
-std::vector<Property> parseProperties(JsonFields& fields, const char* kind) {
+// All members but those of every command.
+std::vector<Property> parseProperties(const Message& message) {
   std::vector<Property> properties;
-  for (auto& [name, numbers] : fields.otherNumbers()) properties.push_back({name, numbers});
-  if (properties.empty()) throw UsageError(fmt::format("no property of the {} is given", kind));
+  for (const auto& [name, value] : message.items()) {
+    if (name == "do" || name == "name") continue;
+    Property& property = properties.emplace_back(Property{name, {}});
+    for (const Message& number : value.is_array() ? value : Message::array({value}))
+      property.numbers.push_back(toNumber(number));
+  }
   return properties;
 }
 
-Command parseMaterial(JsonFields& fields) {
-  EditMaterial edit{fields.text("name"), {}};
-  edit.properties = parseProperties(fields, "material");
-  return edit;
-}
-
-Command parseLight(JsonFields& fields) {
-  EditLight edit{fields.text("name"), {}};
-  edit.properties = parseProperties(fields, "light");
-  return edit;
-}
-
-Command parseEnvironment(JsonFields& fields) {
-  SetEnvironment environment;
-  environment.source = fields.findText("source");
-  environment.intensity = findReal(fields, "intensity");
-  environment.rotation = findReal(fields, "rotation");
-  environment.on = fields.findFlag("on");
-  if (!environment.source && !environment.intensity && !environment.rotation && !environment.on) {
-    fields.rejectOthers();
-    throw UsageError("no value of the environment is given");
-  }
-  return environment;
-}
-
-Command parseOrbitCenter(JsonFields& fields) {
-  const std::vector<double> point = fields.numbers("point", 3);
-  return SetOrbitCenter{vec3(point[0], point[1], point[2])};
-}
-
-Command parseTransform(JsonFields& fields) {
-  SetTransform transform;
-  transform.instance = fields.text("instance");
-  const std::vector<double> values = fields.numbers("matrix", 12);
+Command parseTransform(const Message& message) {
+  SetTransform transform{textAt(message, "instance")};
+  const Message& values = message.at("matrix");
   for (glm::length_t row = 0; row < 3; ++row)
     for (glm::length_t column = 0; column < 4; ++column)
-      transform.worldFromObject[column][row] = static_cast<float>(values[static_cast<std::size_t>(4 * row + column)]);
+      transform.worldFromObject[column][row] = values[static_cast<std::size_t>(4 * row + column)].get<float>();
   return transform;
 }
 
-Command parseMove(JsonFields& fields) {
-  const std::string instance = fields.text("instance");
-  const std::vector<double> by = fields.numbers("by", 3);
-  return Move{instance, vec3(by[0], by[1], by[2])};
-}
-
-Command parseToneMap(JsonFields& fields) {
-  const std::string name = fields.text("name");
-  if (name == "default") return SetToneMap{};
-  const std::optional<render::ToneMap> toneMap = render::toneMapByName(name);
-  if (!toneMap)
-    throw UsageError(fmt::format("unknown tone map '{}'{}", name, suggestionOrList(name, render::toneMapNames())));
-  return SetToneMap{toneMap};
-}
-
-Command parsePrint(JsonFields& fields) {
-  if (!fields.findFlag("on").value_or(true)) return SetPrint{};
+Command parsePrint(const Message& message) {
+  if (!message.at("on").get<bool>()) return SetPrint{};
   PrintRequest print;
-  print.all = fields.findFlag("all").value_or(false);
-  if (fields.has("limit")) print.limit = fields.count("limit");
+  print.all = message.at("all").get<bool>();
+  print.limit = message.at("limit").get<std::uint64_t>();
   if (!print.all) {
-    print.pixels.x = fields.index("x");
-    print.pixels.y = fields.index("y");
-    print.pixels.width = fields.has("width") ? fields.count("width") : 1;
-    print.pixels.height = fields.has("height") ? fields.count("height") : 1;
+    const uvec2 pixel = parsePixel(message), block = sizeOf(message);
+    print.pixels = {pixel.x, pixel.y, block.x, block.y};
   }
   return SetPrint{print};
 }
 
-using Parser = Command (*)(JsonFields&);
-constexpr std::pair<std::string_view, Parser> kParsers[] = {
+using Parser = Command (*)(const Message&);
+const std::unordered_map<std::string, Parser> kParsers{
     {"orbit",
-     [](JsonFields& f) -> Command {
-       return Orbit{f.real("dx", 0), f.real("dy", 0)};
+     [](const Message& m) -> Command {
+       return Orbit{realAt(m, "dx"), realAt(m, "dy")};
      }},
     {"pan",
-     [](JsonFields& f) -> Command {
-       return Pan{{f.real("dx", 0), f.real("dy", 0)}};
+     [](const Message& m) -> Command {
+       return Pan{{realAt(m, "dx"), realAt(m, "dy")}};
      }},
     {"zoom", parseZoom},
     {"fly",
-     [](JsonFields& f) -> Command {
-       const vec3 meters(f.real("right", 0), f.real("up", 0), f.real("forward", 0));
-       return Fly{meters, f.real("yaw", 0), f.real("pitch", 0)};
+     [](const Message& m) -> Command {
+       return Fly{{realAt(m, "right"), realAt(m, "up"), realAt(m, "forward")}, realAt(m, "yaw"), realAt(m, "pitch")};
      }},
-    {"endDrag", [](JsonFields&) -> Command { return EndDrag{}; }},
-    {"frame", [](JsonFields& f) -> Command { return Frame{f.findText("instance").value_or("")}; }},
-    {"camera", [](JsonFields& f) -> Command { return SetCamera{{.name = f.text("name")}}; }},
-    {"look", parseLook},
-    {"lens", parseLens},
-    {"orbitCenter", parseOrbitCenter},
-    {"program", [](JsonFields& f) -> Command { return SetProgram{f.text("name")}; }},
+    {"endDrag", [](const Message&) -> Command { return EndDrag{}; }},
+    {"frame", [](const Message& m) -> Command { return Frame{textAt(m, "instance")}; }},
+    {"camera", [](const Message& m) -> Command { return SetCamera{{.name = textAt(m, "name")}}; }},
+    {"look", [](const Message& m) -> Command { return SetCamera{parseCamera(m)}; }},
+    {"lens",
+     [](const Message& m) -> Command {
+       return SetLens{findAt<float>(m, "fov"), findAt<float>(m, "aperture"), findAt<float>(m, "focus")};
+     }},
+    {"orbitCenter", [](const Message& m) -> Command { return SetOrbitCenter{toPoint(m.at("point"))}; }},
+    {"program", [](const Message& m) -> Command { return SetProgram{textAt(m, "name")}; }},
     {"set",
-     [](JsonFields& f) -> Command {
-       const std::string name = f.text("parameter");
-       return SetParameter{name, f.assignedValue("value")};
+     [](const Message& m) -> Command {
+       return SetParameter{textAt(m, "parameter"), assignedValue(m.at("value"))};
      }},
-    {"material", parseMaterial},
-    {"light", parseLight},
-    {"environment", parseEnvironment},
+    {"material",
+     [](const Message& m) -> Command {
+       return EditMaterial{textAt(m, "name"), parseProperties(m)};
+     }},
+    {"light",
+     [](const Message& m) -> Command {
+       return EditLight{textAt(m, "name"), parseProperties(m)};
+     }},
+    {"environment",
+     [](const Message& m) -> Command {
+       return SetEnvironment{findAt<std::string>(m, "source"), findAt<float>(m, "intensity"),
+                             findAt<float>(m, "rotation"), findAt<bool>(m, "on")};
+     }},
     {"transform", parseTransform},
-    {"move", parseMove},
-    {"time", [](JsonFields& f) -> Command { return SetFrame{static_cast<float>(f.number("frame"))}; }},
-    {"output", [](JsonFields& f) -> Command { return SelectOutput{f.text("name")}; }},
-    {"exposure", [](JsonFields& f) -> Command { return SetExposure{f.number("stops")}; }},
-    {"tonemap", parseToneMap},
-    {"size",
-     [](JsonFields& f) -> Command {
-       const std::uint32_t width = f.count("width");
-       return SetSize{{width, f.count("height")}};
+    {"move",
+     [](const Message& m) -> Command {
+       return Move{textAt(m, "instance"), toPoint(m.at("by"))};
      }},
-    {"samples", [](JsonFields& f) -> Command { return SetSamples{f.count("count")}; }},
+    {"time", [](const Message& m) -> Command { return SetFrame{realAt(m, "frame")}; }},
+    {"output", [](const Message& m) -> Command { return SelectOutput{textAt(m, "name")}; }},
+    {"exposure", [](const Message& m) -> Command { return SetExposure{m.at("stops").get<double>()}; }},
+    {"tonemap", [](const Message& m) -> Command { return SetToneMap{render::toneMapByName(textAt(m, "name"))}; }},
+    {"size", [](const Message& m) -> Command { return SetSize{sizeOf(m)}; }},
+    {"samples", [](const Message& m) -> Command { return SetSamples{m.at("count").get<std::uint32_t>()}; }},
     {"print", parsePrint},
-    {"rewind", [](JsonFields&) -> Command { return Rewind{}; }},
-    {"undo", [](JsonFields&) -> Command { return Undo{}; }},
-    {"redo", [](JsonFields&) -> Command { return Redo{}; }},
+    {"rewind", [](const Message&) -> Command { return Rewind{}; }},
+    {"undo", [](const Message&) -> Command { return Undo{}; }},
+    {"redo", [](const Message&) -> Command { return Redo{}; }},
 };
+
+std::string_view protocolFile(std::string_view name) {
+  for (const EmbeddedFile& file : embeddedSessionProtocol())
+    if (file.path == name) return file.data;
+  throw Error(fmt::format("{} is not embedded", name));
+}
 
 }  // namespace
 
-std::vector<std::string> commandNames() {
-  std::vector<std::string> names;
-  for (const auto& [name, parser] : kParsers) names.emplace_back(name);
-  return names;
+std::string_view sessionProtocol() { return protocolFile("session_protocol.json"); }
+
+const MessageSchema& sessionSchema() {
+  static const MessageSchema kSchema({sessionProtocol()});
+  return kSchema;
 }
 
-Command parseCommand(const std::string& name, JsonFields& fields, const std::vector<std::string>& moreNames) {
-  const auto found = std::ranges::find(kParsers, name, &std::pair<std::string_view, Parser>::first);
-  if (found == std::end(kParsers)) {
-    std::vector<std::string> names = commandNames();
-    names.insert(names.end(), moreNames.begin(), moreNames.end());
-    throw UsageError(fmt::format("unknown command '{}'{}", name, suggestionOrList(name, names)));
-  }
-  const Command command = found->second(fields);
-  fields.rejectOthers();
-  return command;
+const MessageSchema& scriptSchema() {
+  static const MessageSchema kSchema({sessionProtocol(), protocolFile("script_protocol.json")});
+  return kSchema;
 }
 
-}  // namespace quintet::job::interactive
+Command parseCommand(const Message& message) { return kParsers.at(textAt(message, "do"))(message); }
+
+CameraRequest parseCamera(const Message& message) {
+  CameraRequest camera{.lookFrom = toPoint(message.at("from")), .up = toPoint(message.at("up"))};
+  if (message.contains("at")) camera.lookAt = toPoint(message["at"]);
+  camera.verticalFov = findAt<float>(message, "fov");
+  camera.apertureRadius = findAt<float>(message, "aperture");
+  camera.focusDistance = findAt<float>(message, "focus");
+  return camera;
+}
+
+uvec2 parsePixel(const Message& message) {
+  for (const char* name : {"x", "y"})
+    if (!message.contains(name)) throw UsageError(fmt::format("'{}' is missing", name));
+  return {message["x"].get<std::uint32_t>(), message["y"].get<std::uint32_t>()};
+}
+
+std::string assignedValue(const Message& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string list;
+  for (const Message& element : value) list += (list.empty() ? "" : ",") + element.dump();
+  return list;
+}
+
+}  // namespace job::interactive
+}  // namespace quintet

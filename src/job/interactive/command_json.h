@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of sessions as JSON objects: {"do":"orbit","dx":30,"dy":0}. docs/viewer.md lists them.
+// Commands of sessions as JSON objects: {"do":"orbit","dx":30,"dy":0}. session_protocol.json describes them.
 #ifndef QUINTET_JOB_INTERACTIVE_COMMAND_JSON_H
 #define QUINTET_JOB_INTERACTIVE_COMMAND_JSON_H
 
+#include <cstdint>
 #include <string>
-#include <vector>
+#include <string_view>
 
+#include "base/math.h"
 #include "job/interactive/command.h"
-#include "job/interactive/json_fields.h"
+#include "job/interactive/message_schema.h"
 
 namespace quintet::job::interactive {
 
-// Values of "do".
-std::vector<std::string> commandNames();
+std::string_view sessionProtocol();  // session_protocol.json
+const MessageSchema& sessionSchema();
+const MessageSchema& scriptSchema();  // with what only scripts have: script_protocol.json
 
-// The command `name` with the other members of the object. Throws UsageError for unknown names and members, and for
-// values of the wrong type. `moreNames`: values of "do" that the caller handles itself, for messages.
-Command parseCommand(const std::string& name, JsonFields& fields, const std::vector<std::string>& moreNames = {});
+// The command of a message that one of the schemas has read.
+Command parseCommand(const nlohmann::json& message);
+
+// Parts of such messages.
+CameraRequest parseCamera(const nlohmann::json& message);  // "from", "at", "up", "fov", "aperture", "focus"
+uvec2 parsePixel(const nlohmann::json& message);           // "x" and "y". Throws UsageError if one is missing
+std::string assignedValue(const nlohmann::json& value);    // as in "name=value": "3", "true", "0.5,1,0"
 
 }  // namespace quintet::job::interactive
 #endif

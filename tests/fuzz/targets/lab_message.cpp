@@ -18,7 +18,7 @@ void readInput(Input input) {
     const lab::PageMessage& message = std::get<lab::PageMessage>(parsed);
     if (!lab::commandName(text)) reportFinding("the supervisor does not find the name of a valid command");
     if (const auto* open = std::get_if<lab::OpenSession>(&message.command))
-      if (open->size && (open->size->x > lab::kMaxSide || open->size->y > lab::kMaxSide || open->size->x == 0))
+      if (open->size && (open->size->x > 4096 || open->size->y > 4096 || open->size->x == 0))
         reportFinding("the size of the image is not within the limits");
   }
   if (const auto target = lab::parseTarget(text))

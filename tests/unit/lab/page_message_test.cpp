@@ -2,10 +2,14 @@
 #include "lab/page_message.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "render/tone_map/tone_map.h"
 
 namespace quintet::lab {
 namespace {
 
+using Json = nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
@@ -85,12 +89,17 @@ TEST(PageMessage, ReportsErrorsWithTheId) {
   EXPECT_THAT(errorOf(R"({"do":"orbitt"})").message, HasSubstr("unknown command 'orbitt' (did you mean 'orbit'?)"));
   EXPECT_THAT(errorOf(R"({"do":"opne"})").message, HasSubstr("did you mean 'open'?"));
   EXPECT_THAT(errorOf(R"({"do":"open","program":"a","camra":{}})").message, HasSubstr("unknown key 'camra'"));
-  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","parameters":{"x":{}}})").message, HasSubstr("parameter 'x'"));
-  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","width":8})").message, HasSubstr("'height' is missing"));
-  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","width":5000,"height":5})").message,
-              HasSubstr("larger than 4096x4096"));
-  EXPECT_THAT(errorOf(R"({"do":"size","width":5000,"height":5})").message, HasSubstr("larger than 4096x4096"));
-  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","camera":{"at":[0,0,0]}})").message, HasSubstr("'from'"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","parameters":{"x":{}}})").message,
+              HasSubstr("'x' of 'parameters' must be a number, true or false, a text, or a list of numbers"));
+  EXPECT_THAT(errorOf(R"({"do":"open","program":"a","width":8})").message,
+              HasSubstr("'width' and 'height' require each other"));
+  for (const char* text :
+       {R"({"do":"open","program":"a","width":5000,"height":5})", R"({"do":"size","width":5000,"height":5})"})
+    EXPECT_EQ(errorOf(text).message, "'width' must be a whole number from 1 to 4096");
+  EXPECT_EQ(errorOf(R"({"do":"open","program":"a","camera":{"at":[0,0,0]}})").message, "'from' of 'camera' is missing");
+  EXPECT_EQ(errorOf(R"({"do":"open","program":"a","camera":{"from":[0,0,0],"fob":4}})").message,
+            "unknown key 'fob' of 'camera' (did you mean 'fov'?)");
+  EXPECT_EQ(errorOf(R"({"do":"open"})").message, "'program' is missing");
   EXPECT_THAT(errorOf(R"({"do":"pause","id":[1]})").message, HasSubstr("'id'"));
 }
 
@@ -119,6 +128,7 @@ TEST(PageMessage, ReadsValuesOfBlocks) {
   EXPECT_EQ(one.size, uvec2(1));
   EXPECT_EQ(std::get<ReadValue>(parsed(R"({"do":"value","x":3,"y":4,"width":5,"height":6})").command).size,
             uvec2(5, 6));
+  EXPECT_EQ(std::get<ReadValue>(parsed(R"({"do":"value","x":3,"y":4,"width":5})").command).size, uvec2(5, 1));
   EXPECT_THAT(errorOf(R"({"do":"value","x":3,"y":4,"width":0,"height":6})").message, HasSubstr("width"));
 }
 
@@ -135,13 +145,58 @@ TEST(PageMessage, ReadsVideosAndFiles) {
   EXPECT_TRUE(gif.turn);
   EXPECT_THAT(errorOf(R"({"do":"video","frames":0})").message, HasSubstr("frames"));
   EXPECT_THAT(errorOf(R"({"do":"video","frames":10001})").message, HasSubstr("10000"));
-  EXPECT_THAT(errorOf(R"({"do":"video","frames":1,"fps":0})").message, HasSubstr("fps"));
+  EXPECT_EQ(errorOf(R"({"do":"video","frames":1,"fps":0})").message,
+            "'fps' must be a number above 0 and of at most 240");
   EXPECT_THAT(errorOf(R"({"do":"video","frames":1,"format":"avi"})").message, HasSubstr("mp4, webm, gif"));
   const auto part = std::get<ReadFilePart>(parsed(R"({"do":"read","file":2,"offset":5000000000})").command);
   EXPECT_EQ(part.file, 2u);
   EXPECT_EQ(part.offset, 5000000000u);
   EXPECT_THAT(errorOf(R"({"do":"read","file":2,"offset":0.5})").message, HasSubstr("offset"));
   EXPECT_THAT(errorOf(R"({"do":"read","file":2,"offset":-1})").message, HasSubstr("offset"));
+}
+
+TEST(PageMessage, ReadsProgramsThatAreNotSaved) {
+  // A restarted worker gets the last `open` with the empty name of its program.
+  const auto open = std::get<OpenSession>(parsed(R"({"do":"open","program":"","files":{"a.rt.glsl":"text"}})").command);
+  EXPECT_EQ(open.program, "");
+  EXPECT_THAT(open.files, ElementsAre(Pair("a.rt.glsl", "text")));
+  EXPECT_THAT(errorOf(R"({"do":"open","files":{}})").message, HasSubstr("'files'"));
+  EXPECT_EQ(errorOf(R"({"do":"open","files":{"a.rt.glsl":1}})").message, "'a.rt.glsl' of 'files' must be a text");
+}
+
+// A value of a type of the schema.
+Json sample(const std::string& type) {
+  const Json types = labSchema().content()["types"];
+  if (type.ends_with("{}")) return {{"a.rt.glsl", sample(type.substr(0, type.size() - 2))}};
+  if (const std::size_t list = type.find('['); list != type.npos) {
+    const std::string size = type.substr(list + 1, type.size() - list - 2);
+    return Json(size.empty() ? 1 : std::stoul(size), sample(type.substr(0, list)));
+  }
+  if (const std::size_t end = type.find('|'); end != type.npos) return sample(type.substr(0, end));
+  if (!types.contains(type)) return type == "text" ? Json("a") : type == "flag" ? Json(true) : Json(2);
+  const Json& described = types[type];
+  if (described.contains("is")) return sample(described["is"]);
+  if (described.contains("values")) return described["values"][0];
+  Json object = Json::object();
+  for (const auto& [name, field] : described.at("fields").items()) object[name] = sample(field["type"]);
+  return object;
+}
+
+TEST(PageMessage, ReadsEveryCommandOfTheSchema) {
+  for (const auto& [name, command] : labSchema().content()["commands"].items()) {
+    Json message{{"do", name}};
+    if (command.contains("fields"))
+      for (const auto& [field, description] : command["fields"].items()) message[field] = sample(description["type"]);
+    if (command.contains("others")) message["property"] = sample(command["others"]);
+    const PageCommand parsedCommand = parsed(message.dump()).command;
+    EXPECT_EQ(std::holds_alternative<OpenSession>(parsedCommand), name == "open") << name;
+  }
+}
+
+TEST(PageMessage, TheSchemaHasTheToneMaps) {
+  std::vector<std::string> names = render::toneMapNames();
+  names.insert(names.begin(), "default");
+  EXPECT_EQ(labSchema().content()["types"]["ToneMap"]["values"].get<std::vector<std::string>>(), names);
 }
 
 }  // namespace

@@ -331,10 +331,7 @@ TEST_F(SessionTest, RejectsEditsOfAnimatedProperties) {
 TEST_F(SessionTest, LightPropertiesDoNotDependOnTheirOrder) {
   writeFile(folder_ / "a.scene.toml", replaced(litScene(), "intensity = 20.0", "intensity = 0.0"));
   const auto session = makeSession(request(1));
-  const auto apply = [&](const std::string& json) {
-    JsonFields fields(json);
-    session->apply(parseCommand(fields.text("do"), fields));
-  };
+  const auto apply = [&](const std::string& json) { session->apply(parseCommand(sessionSchema().readCommand(json))); };
   apply(R"({"do":"light","name":"lamp","color":[1,0,0],"intensity":5})");
   EXPECT_EQ(session->light(0).light.intensity, vec3(5, 0, 0));
   apply(R"({"do":"light","name":"spot","innerConeAngle":40,"outerConeAngle":60})");

@@ -12,10 +12,7 @@ namespace {
 using testing::AllOf;
 using ::testing::HasSubstr;
 
-Command parse(const std::string& line) {
-  JsonFields fields(line);
-  return parseCommand(fields.text("do"), fields, {"refine"});
-}
+Command parse(const std::string& line) { return parseCommand(scriptSchema().readCommand(line)); }
 
 std::string errorOf(const std::string& line) {
   try {
@@ -103,14 +100,15 @@ TEST(CommandJson, RejectsMistakes) {
   EXPECT_THAT(errorOf(R"({"do":"orbit","dx":"a"})"), HasSubstr("'dx' must be a number"));
   EXPECT_THAT(errorOf(R"({"do":"size","width":0,"height":3})"), HasSubstr("'width' must be a whole number from 1"));
   EXPECT_THAT(errorOf(R"({"do":"size","width":1.5,"height":3})"), HasSubstr("whole number"));
-  EXPECT_THAT(errorOf(R"({"do":"tonemap","name":"acse"})"), HasSubstr("'aces'"));
-  EXPECT_THAT(errorOf(R"({"do":"transform","instance":"a","matrix":[1]})"), HasSubstr("12 numbers"));
+  EXPECT_EQ(errorOf(R"({"do":"tonemap","name":"acse"})"), "'name' cannot be 'acse' (did you mean 'aces'?)");
+  EXPECT_THAT(errorOf(R"({"do":"transform","instance":"a","matrix":[1]})"),
+              HasSubstr("'matrix' must be a list of 12 numbers"));
   EXPECT_THAT(errorOf(R"({"do":"zoom","x":1})"), HasSubstr("require each other"));
   EXPECT_THAT(errorOf(R"({"do":"orbit","dx":1e300})"), AllOf(HasSubstr("'dx'"), HasSubstr("range")));
   EXPECT_THAT(errorOf(R"({"do":"orbit","dx":1e999})"), HasSubstr("a number is out of range"));
   EXPECT_EQ(errorOf(R"({"do":"orbit")"), "byte 14: invalid JSON");
   EXPECT_THAT(errorOf(R"({"do":"environment","on":1})"), HasSubstr("'on' must be true or false"));
-  EXPECT_THAT(errorOf(R"({"do":"light","name":"sun"})"), HasSubstr("no property of the light"));
+  EXPECT_THAT(errorOf(R"({"do":"light","name":"sun"})"), HasSubstr("no value of the light"));
   EXPECT_THAT(errorOf(R"({"do":"lens"})"), HasSubstr("no value of the lens"));
   EXPECT_EQ(errorOf(R"({"do":"lens","fob":40})"), "unknown key 'fob' (did you mean 'fov'?)");
   EXPECT_THAT(errorOf(R"({"do":"environment"})"), HasSubstr("no value of the environment"));
