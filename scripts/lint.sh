@@ -134,7 +134,7 @@ checkChanged() {
 }
 
 case ${1-} in
-  '' | --fix) checkCpp "${1-}"; checkScripts ;;
+  '' | --fix) checkCpp "$@"; checkScripts ;;
   --cpp) checkCpp ;;
   --scripts) checkScripts ;;
   --tidy) shift; checkTidy "$@" ;;
